@@ -1,1 +1,4 @@
 //! Stub.
+
+pub mod scene;
+pub mod setup;

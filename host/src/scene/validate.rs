@@ -1,0 +1,171 @@
+//! How the parts of a scene fit together: names, light, extent, and free space in front of the camera.
+
+use super::parse::{Draft, Source};
+use super::{Camera, MAX_LENGTH, Sphere};
+
+/// Notes every fault of `draft`.
+pub(super) fn validate(draft: &Draft, source: &mut Source<'_>) {
+    names_are_unique(draft, source);
+    something_shines(draft, source);
+    distances_fit(draft, source);
+    directions_differ(draft, source);
+    if source.is_clean() {
+        camera_is_in_free_space(draft, source);
+    }
+}
+
+fn names_are_unique(draft: &Draft, source: &mut Source<'_>) {
+    for (index, placed) in draft.spheres.iter().enumerate() {
+        let name = &placed.sphere.name;
+        if let Some(first) = draft.spheres[..index]
+            .iter()
+            .find(|earlier| earlier.sphere.name == *name)
+        {
+            let line = source.line(first.at);
+            let message =
+                format!("a second sphere \"{name}\" (the first is at line {line}); rename one of them");
+            source.fault(placed.at, message);
+        }
+    }
+}
+
+fn something_shines(draft: &Draft, source: &mut Source<'_>) {
+    if let Some(first) = draft.spheres.first()
+        && draft
+            .spheres
+            .iter()
+            .all(|placed| placed.sphere.emission == [0.0; 3])
+    {
+        source.fault(
+            first.at,
+            "nothing shines, the picture would be black; give one sphere `emission = [r, g, b]`",
+        );
+    }
+}
+
+/// A ray from any sphere or from the camera to the far side of any sphere must be representable.
+fn distances_fit(draft: &Draft, source: &mut Source<'_>) {
+    for (index, a) in draft.spheres.iter().enumerate() {
+        let farthest = draft.spheres[..index]
+            .iter()
+            .map(|b| (reach(&a.sphere, &b.sphere), b))
+            .max_by(|(left, _), (right, _)| left.total_cmp(right));
+        if let Some((extent, b)) = farthest
+            && extent >= MAX_LENGTH
+        {
+            let (one, other, line) = (&a.sphere.name, &b.sphere.name, source.line(b.at));
+            let cause = format!("from \"{one}\" across \"{other}\" (line {line}) it is {extent:.0}");
+            let message = format!("{cause}, beyond the 16:16 range ({MAX_LENGTH}); make the scene smaller");
+            source.fault(a.at, message);
+        }
+    }
+}
+
+fn directions_differ(draft: &Draft, source: &mut Source<'_>) {
+    if length(cross(draft.camera.direction, draft.camera.up)) < 1e-3 {
+        source.fault(
+            draft.camera_at,
+            "the camera's `up` is parallel to its `direction`; choose another `up`",
+        );
+    }
+}
+
+fn camera_is_in_free_space(draft: &Draft, source: &mut Source<'_>) {
+    // What else a scene is seen at, `check_frame` checks: here it is the default picture.
+    let spheres = draft.spheres.iter().map(|placed| (&placed.sphere, placed.at));
+    let trouble = first_blocked_ray(&draft.camera, spheres, 256, 192);
+    if let Some((corner, blocked)) = trouble {
+        let message = match blocked {
+            Blocked::Inside(sphere, at) => format!(
+                "the {corner} ray starts inside the solid of sphere \"{}\" (line {}); move the camera or change `near`",
+                sphere.name,
+                source.line(at)
+            ),
+            Blocked::TooFar(sphere, at) => format!(
+                "the {corner} ray starts too far from sphere \"{}\" (line {}) for 16:16; move the camera nearer",
+                sphere.name,
+                source.line(at)
+            ),
+        };
+        source.fault(draft.camera_at, message);
+    }
+}
+
+/// Why a ray cannot start where it does, with the sphere in question and whatever its caller knows it by.
+pub(super) enum Blocked<'s, T> {
+    Inside(&'s Sphere, T),
+    TooFar(&'s Sphere, T),
+}
+
+/// Looks at the middle and the four corners of a picture of this shape.
+pub(super) fn first_blocked_ray<'s, T>(
+    camera: &Camera,
+    spheres: impl Iterator<Item = (&'s Sphere, T)> + Clone,
+    width: u16,
+    height: u16,
+) -> Option<(&'static str, Blocked<'s, T>)> {
+    start_points(camera, width, height)
+        .into_iter()
+        .find_map(|(corner, start)| {
+            spheres.clone().find_map(|(sphere, tag)| {
+                let distance = length(sub(start, sphere.centre));
+                if distance + sphere.radius >= MAX_LENGTH {
+                    Some((corner, Blocked::TooFar(sphere, tag)))
+                } else if (distance < sphere.radius) != sphere.hollow {
+                    Some((corner, Blocked::Inside(sphere, tag)))
+                } else {
+                    None
+                }
+            })
+        })
+}
+
+/// Where the rays in the middle and at the corners start. The tent filter reaches a quarter of a pixel outwards.
+fn start_points(camera: &Camera, width: u16, height: u16) -> [(&'static str, [f64; 3]); 5] {
+    let aspect = f64::from(width) / f64::from(height);
+    let right = normalised(cross(camera.direction, camera.up));
+    let up = cross(right, camera.direction);
+    let reach_x = camera.plane_height * aspect * (0.5 + 0.25 / f64::from(width));
+    let reach_y = camera.plane_height * (0.5 + 0.25 / f64::from(height));
+    [
+        ("middle", 0.0, 0.0),
+        ("top left", -1.0, 1.0),
+        ("top right", 1.0, 1.0),
+        ("bottom left", -1.0, -1.0),
+        ("bottom right", 1.0, -1.0),
+    ]
+    .map(|(corner, x, y)| {
+        let ray =
+            normalised([0, 1, 2].map(|i| camera.direction[i] + x * reach_x * right[i] + y * reach_y * up[i]));
+        (
+            corner,
+            [0, 1, 2].map(|i| camera.position[i] + camera.near * ray[i]),
+        )
+    })
+}
+
+/// The greatest distance from the centre of either sphere to a point of the other.
+fn reach(a: &Sphere, b: &Sphere) -> f64 {
+    length(sub(a.centre, b.centre)) + a.radius.max(b.radius)
+}
+
+fn sub(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}
+
+fn length(v: [f64; 3]) -> f64 {
+    v.iter().map(|c| c * c).sum::<f64>().sqrt()
+}
+
+fn normalised(v: [f64; 3]) -> [f64; 3] {
+    let length = length(v);
+    v.map(|c| c / length)
+}
