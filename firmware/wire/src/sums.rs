@@ -1,0 +1,112 @@
+//! Sums of radiance, packed.
+//!
+//! One pixel is three sums, red, green and blue, each an unsigned 40-bit integer (24:16), little-endian: 15 bytes. Scenes limit
+//! emission to less than 4096 and a packet holds at most 4096 samples of a pixel, so a sum stays below 2^24 and never saturates.
+
+use core::fmt;
+
+use crate::{DecodeError, MAX_PIXELS};
+
+/// The greatest sum the wire can carry: 2^40 - 1, in units of 2^-16.
+pub const SUM_MAX: u64 = (1 << 40) - 1;
+
+/// Bytes of one sum.
+const SUM_LEN: usize = 5;
+
+/// Bytes of one pixel.
+const PIXEL_LEN: usize = 3 * SUM_LEN;
+
+/// Sums that no packet can carry.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SumsError {
+    /// There are no pixels, or more than [`MAX_PIXELS`].
+    Pixels,
+    /// A sum is greater than [`SUM_MAX`]: the scene or the plan breaks the limits above.
+    TooLarge,
+}
+
+impl fmt::Display for SumsError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Pixels => "a packet carries 1 to 16 pixels",
+            Self::TooLarge => {
+                "a pixel's sum does not fit 40 bits: more samples or more light than the wire allows"
+            }
+        })
+    }
+}
+
+impl core::error::Error for SumsError {}
+
+/// The sums of 1 to [`MAX_PIXELS`] pixels as they travel.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub struct PixelSums {
+    packed: [u8; MAX_PIXELS * PIXEL_LEN],
+    pixels: u8,
+}
+
+impl PixelSums {
+    /// Packs the sums of `pixels`.
+    pub fn new(pixels: &[[u64; 3]]) -> Result<Self, SumsError> {
+        let mut packed = [0; MAX_PIXELS * PIXEL_LEN];
+        if pixels.is_empty() || pixels.len() > MAX_PIXELS {
+            return Err(SumsError::Pixels);
+        }
+        for (slot, &sum) in packed.chunks_exact_mut(SUM_LEN).zip(pixels.iter().flatten()) {
+            if sum > SUM_MAX {
+                return Err(SumsError::TooLarge);
+            }
+            slot.copy_from_slice(&sum.to_le_bytes()[..SUM_LEN]);
+        }
+        Ok(Self {
+            packed,
+            pixels: pixels.len() as u8,
+        })
+    }
+
+    /// How many pixels there are.
+    pub fn pixels(&self) -> u8 {
+        self.pixels
+    }
+
+    /// Red, green and blue of every pixel, in order.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = [u64; 3]> + '_ {
+        self.bytes().chunks_exact(PIXEL_LEN).map(|pixel| {
+            let mut sums = [0; 3];
+            for (sum, bytes) in sums.iter_mut().zip(pixel.chunks_exact(SUM_LEN)) {
+                *sum = bytes
+                    .iter()
+                    .rev()
+                    .fold(0, |sum, &byte| sum << 8 | u64::from(byte));
+            }
+            sums
+        })
+    }
+
+    pub(crate) fn bytes(&self) -> &[u8] {
+        &self.packed[..usize::from(self.pixels) * PIXEL_LEN]
+    }
+
+    pub(crate) fn from_bytes(bytes: &[u8], pixels: u8) -> Result<Self, DecodeError> {
+        if pixels == 0 || usize::from(pixels) > MAX_PIXELS {
+            return Err(DecodeError::Range);
+        }
+        let mut packed = [0; MAX_PIXELS * PIXEL_LEN];
+        let wanted = usize::from(pixels) * PIXEL_LEN;
+        if bytes.len() != wanted {
+            return Err(if bytes.len() < wanted {
+                DecodeError::Truncated
+            } else {
+                DecodeError::TooLong
+            });
+        }
+        packed[..wanted].copy_from_slice(bytes);
+        Ok(Self { packed, pixels })
+    }
+}
+
+impl fmt::Debug for PixelSums {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_list().entries(self.iter()).finish()
+    }
+}

@@ -1,0 +1,269 @@
+//! What a decoder must refuse, and with which error.
+
+use wire::boot::{self, PixelOrder};
+use wire::{
+    Boot, DecodeError, FromCore, MAX_PAYLOAD, Name, Order, PixelSums, Pixels, Report, SumsError, ToCore,
+};
+
+fn pixels_packet() -> Vec<u8> {
+    let sums = PixelSums::new(&[[1, 2, 3]; 16]).unwrap();
+    let report = Report::Pixels(Pixels {
+        unit: 1,
+        epoch: 0,
+        samples: 4096,
+        scene: 7,
+        free_leases: 0,
+        rejected: 0,
+        ticks: 1,
+        rays: 1,
+        sums,
+    });
+    let mut out = [0; MAX_PAYLOAD];
+    let len = FromCore {
+        core: 3,
+        seq: 0,
+        session: 9,
+        report,
+    }
+    .encode(&mut out);
+    out[..len].to_vec()
+}
+
+/// The packet with `bytes` put at `offset`.
+fn patched(packet: &[u8], offset: usize, bytes: &[u8]) -> Vec<u8> {
+    let mut packet = packet.to_vec();
+    packet[offset..offset + bytes.len()].copy_from_slice(bytes);
+    packet
+}
+
+#[test]
+fn a_full_packet_is_exactly_as_long_as_allowed() {
+    assert_eq!(pixels_packet().len(), MAX_PAYLOAD);
+}
+
+#[test]
+fn every_cut_of_a_packet_is_refused() {
+    let packet = pixels_packet();
+    for len in 0..packet.len() {
+        assert_eq!(
+            FromCore::decode(&packet[..len]),
+            Err(DecodeError::Truncated),
+            "{len} bytes"
+        );
+    }
+    let longer = [packet.as_slice(), &[0]].concat();
+    assert_eq!(FromCore::decode(&longer), Err(DecodeError::TooLong));
+}
+
+#[test]
+fn headers_are_checked() {
+    let packet = pixels_packet();
+    let refused = |offset, bytes: &[u8], error| {
+        assert_eq!(
+            FromCore::decode(&patched(&packet, offset, bytes)),
+            Err(error),
+            "offset {offset}: {bytes:?}"
+        );
+    };
+    refused(1, &[1], DecodeError::Padding);
+    refused(4, &[0x21], DecodeError::Address); // not for the host
+    refused(6, &[1], DecodeError::Address); // not for the host's chip
+    refused(5, &[0x20], DecodeError::Address); // from a monitor processor
+    refused(5, &[0x32], DecodeError::Address); // from processor 18
+    refused(5, &[0x41], DecodeError::Address); // from port 2
+    refused(8, &[0x0F, 0x0F], DecodeError::Address); // core 65552 does not exist
+    refused(10, &[0x01, 0x02], DecodeError::Command(0x0201)); // a lease goes the other way
+    refused(10, &[0, 0], DecodeError::Command(0));
+}
+
+#[test]
+fn flags_and_tag_are_the_routers_business() {
+    let packet = pixels_packet();
+    assert_eq!(
+        FromCore::decode(&patched(&packet, 2, &[0x87, 0x05])),
+        FromCore::decode(&packet)
+    );
+}
+
+#[test]
+fn pixel_and_sample_counts_are_checked() {
+    let packet = pixels_packet();
+    let refused = |offset, bytes: &[u8], error| {
+        assert_eq!(
+            FromCore::decode(&patched(&packet, offset, bytes)),
+            Err(error),
+            "offset {offset}: {bytes:?}"
+        );
+    };
+    refused(24, &[0, 0], DecodeError::Range); // no samples
+    refused(24, &[6, 0], DecodeError::Range); // not a multiple of the 2x2 sub-pixels
+    refused(24, &[0x04, 0x10], DecodeError::Range); // 4100: the sums could overflow
+    refused(30, &[0], DecodeError::Range); // no pixels
+    refused(30, &[17], DecodeError::Range);
+    refused(30, &[15], DecodeError::TooLong);
+}
+
+#[test]
+fn sums_that_do_not_fit_are_refused_not_clipped() {
+    assert!(PixelSums::new(&[[wire::SUM_MAX; 3]; 16]).is_ok());
+    assert_eq!(
+        PixelSums::new(&[[0, wire::SUM_MAX + 1, 0]]),
+        Err(SumsError::TooLarge)
+    );
+    assert_eq!(PixelSums::new(&[[0; 3]; 17]), Err(SumsError::Pixels));
+    assert_eq!(PixelSums::new(&[]), Err(SumsError::Pixels));
+}
+
+/// The brightest picture the issue asks for, and the brightest the scene format allows.
+#[test]
+fn the_brightest_picture_fits() {
+    for radiance in [12, 4095] {
+        let sum = (radiance * u64::from(wire::MAX_SAMPLES)) << 16;
+        let sums = PixelSums::new(&[[sum; 3]; 16]).unwrap();
+        assert!(sums.iter().all(|pixel| pixel == [sum; 3]));
+    }
+}
+
+#[test]
+fn leases_are_checked() {
+    let mut out = [0; MAX_PAYLOAD];
+    let encoded = |order, out: &mut [u8; MAX_PAYLOAD]| {
+        ToCore {
+            core: 0,
+            session: 1,
+            order,
+        }
+        .encode(out)
+    };
+    let lease = |first, count| Order::Lease {
+        number: 1,
+        first,
+        count,
+    };
+
+    let len = encoded(lease(5, 0), &mut out);
+    assert_eq!(ToCore::decode(&out[..len]), Err(DecodeError::Range));
+    let len = encoded(lease(u32::MAX, 2), &mut out);
+    assert_eq!(ToCore::decode(&out[..len]), Err(DecodeError::Range));
+    let len = encoded(lease(u32::MAX, 1), &mut out);
+    assert!(ToCore::decode(&out[..len]).is_ok());
+    assert_eq!(ToCore::decode(&out[..len + 1]), Err(DecodeError::TooLong));
+    assert_eq!(FromCore::decode(&out[..len]), Err(DecodeError::Address));
+}
+
+#[test]
+fn last_words_are_cut_between_characters() {
+    let words = "é".repeat(200);
+    let words = format!("x{words}");
+    let mut out = [0; MAX_PAYLOAD];
+    let len = FromCore {
+        core: 0,
+        seq: 0,
+        session: 0,
+        report: Report::Fault(&words),
+    }
+    .encode(&mut out);
+    let Report::Fault(kept) = FromCore::decode(&out[..len]).unwrap().report else {
+        panic!("not a fault")
+    };
+    assert_eq!(kept.len(), 255);
+    assert!(words.starts_with(kept));
+}
+
+#[test]
+fn names_are_cut_and_kept_printable() {
+    assert_eq!(Name::new("versatilepb").as_str(), "versatilepb");
+    assert_eq!(Name::new("exactly-12-c").as_str(), "exactly-12-c");
+    assert_eq!(Name::new("a name that is too long").as_str(), "a?name?that?");
+    assert_eq!(Name::new("").as_str(), "");
+}
+
+fn block(scene: &[u8]) -> Boot<'_> {
+    Boot {
+        core: 0,
+        cores: 1,
+        session: 1,
+        epoch: 0,
+        width: 64,
+        height: 48,
+        samples_per_unit: 64,
+        spp: 64,
+        seed: 1,
+        epsilon: 16,
+        termination: 0,
+        order: PixelOrder::Leased,
+        profile: Name::new("paper"),
+        collector: [10, 0, 2, 2],
+        port: 17893,
+        address: [10, 0, 2, 15],
+        scene,
+    }
+}
+
+#[test]
+fn boot_blocks_out_of_range_are_refused() {
+    let refused = |what: &str, change: fn(&mut Boot<'_>)| {
+        let mut boot = block(b"scene");
+        change(&mut boot);
+        let mut out = [0; boot::MAX_LEN];
+        boot.encode(&mut out).unwrap();
+        assert_eq!(Boot::decode(&out), Err(DecodeError::Range), "{what}");
+    };
+    refused("a core outside the fleet", |boot| boot.core = 1);
+    refused("no columns", |boot| boot.width = 0);
+    refused("no rows", |boot| boot.height = 0);
+    refused("no samples", |boot| boot.spp = 0);
+    refused("half a 2x2 sub-pixel", |boot| boot.spp = 6);
+    refused("no samples in a unit", |boot| boot.samples_per_unit = 0);
+    refused("sums that could overflow", |boot| boot.samples_per_unit = 4100);
+    refused("more units than ids", |boot| {
+        (boot.width, boot.height, boot.spp, boot.samples_per_unit) = (65535, 65535, 68, 4);
+    });
+    refused("a negative epsilon", |boot| boot.epsilon = -1);
+    refused("no port", |boot| boot.port = 0);
+}
+
+#[test]
+fn damaged_boot_blocks_are_refused() {
+    let mut out = [0; boot::MAX_LEN];
+    let len = block(b"scene").encode(&mut out).unwrap();
+    let out = &out[..len];
+
+    assert_eq!(
+        Boot::decode(&[0; 4096]),
+        Err(DecodeError::Magic),
+        "memory that nothing was loaded into"
+    );
+    assert_eq!(Boot::decode(&patched(out, 4, &[2])), Err(DecodeError::Version(2)));
+    assert_eq!(Boot::decode(&patched(out, 6, &[84])), Err(DecodeError::Range));
+    for at in 8..len {
+        let damaged = patched(out, at, &[out[at] ^ 0x10]);
+        assert_eq!(
+            Boot::decode(&damaged),
+            Err(DecodeError::Checksum),
+            "a flipped bit in byte {at}"
+        );
+    }
+    for cut in 0..len {
+        assert_eq!(
+            Boot::decode(&out[..cut]),
+            Err(DecodeError::Truncated),
+            "{cut} bytes"
+        );
+    }
+}
+
+#[test]
+fn a_block_that_does_not_fit_is_not_written() {
+    let scene = [0; boot::MAX_LEN - boot::HEADER_LEN];
+    let mut out = [0; boot::MAX_LEN + 1];
+    assert_eq!(block(&scene).encode(&mut out), Ok(boot::MAX_LEN));
+    assert_eq!(
+        block(&scene).encode(&mut out[..boot::MAX_LEN - 1]),
+        Err(boot::TooLong)
+    );
+    assert_eq!(
+        block(&[0; boot::MAX_LEN - boot::HEADER_LEN + 1]).encode(&mut out),
+        Err(boot::TooLong)
+    );
+}
