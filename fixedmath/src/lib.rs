@@ -1,3 +1,27 @@
+//! Fixed-point arithmetic for cores without a floating-point unit.
+//!
+//! Numbers are the types of the [`fixed`] crate; the operations are here. An operation has a name of its own for each
+//! trade of speed against error, states its bound and its domain, and has a defined result for *every* input: nothing
+//! here panics, and nothing wraps unless its name says so.
+//!
+//! | room | what |
+//! | --- | --- |
+//! | [`product`] | products with one rounding, dot products in 64 bits |
+//! | [`division`] | restoring division of 16:16 |
+//! | [`root`] | square roots: restoring, split, and by reciprocal root |
+//! | [`unit`] | directions in 2:30: normalising, first-order renormalising |
+//! | [`angle`] | sine and cosine of a turn: parabolas and polynomials |
+//! | [`random`] | linear congruential generators with jump-ahead |
+//!
+//! A bound in *ulp* counts units in the last place of the result's own format.
 #![no_std]
 #![forbid(unsafe_code)]
-//! Stub.
+
+pub mod angle;
+pub mod division;
+pub mod product;
+pub mod random;
+pub mod root;
+pub mod unit;
+
+pub use fixed::types::{I2F30, I16F16, I32F32, U0F32};

@@ -1,0 +1,52 @@
+//! Generators: jumps equal steps, and the published low bits are as short as they say.
+use fixedmath::random::{Lcg32, Lcg64};
+use proptest::prelude::*;
+
+#[test]
+fn published_low_bits_repeat_after_65536_draws() {
+    let mut generator = Lcg32::new(1);
+    let first: Vec<u16> = (0..65_536).map(|_| generator.low_bits()).collect();
+    let second: Vec<u16> = (0..65_536).map(|_| generator.low_bits()).collect();
+    assert_eq!(first, second);
+    let mut sorted = first;
+    sorted.sort_unstable();
+    assert!(
+        sorted.iter().enumerate().all(|(i, &v)| i == usize::from(v)),
+        "each value once a period"
+    );
+}
+
+#[test]
+fn full_period_by_jumping_round() {
+    let mut generator = Lcg64::new(42);
+    generator.jump(u64::MAX);
+    assert_ne!(generator, Lcg64::new(42));
+    generator.next_fraction();
+    assert_eq!(generator, Lcg64::new(42));
+    // Hull and Dobell's condition: the period is 2^64 exactly when half of it leads elsewhere.
+    generator.jump(1 << 63);
+    assert_ne!(generator, Lcg64::new(42));
+}
+
+proptest! {
+    #[test]
+    fn jumps_equal_steps(seed: u64, steps in 0u32..5000) {
+        let (mut walked, mut jumped) = (Lcg64::new(seed), Lcg64::new(seed));
+        (0..steps).for_each(|_| { walked.next_fraction(); });
+        jumped.jump(steps.into());
+        prop_assert_eq!(walked, jumped);
+        let (mut walked, mut jumped) = (Lcg32::new(seed as u32), Lcg32::new(seed as u32));
+        (0..steps).for_each(|_| { walked.low_bits(); });
+        jumped.jump(steps);
+        prop_assert_eq!(walked, jumped);
+    }
+
+    #[test]
+    fn jumps_add_up(seed: u64, a: u64, b: u64) {
+        let (mut twice, mut once) = (Lcg64::new(seed), Lcg64::new(seed));
+        twice.jump(a);
+        twice.jump(b);
+        once.jump(a.wrapping_add(b));
+        prop_assert_eq!(twice, once);
+    }
+}
