@@ -1,0 +1,234 @@
+//! Ethernet, ARP, IPv4 and UDP, done once for every board with an Ethernet controller.
+//!
+//! There is one peer, the collector, so there is no routing and no table: frames to the collector go to the address it was last
+//! heard from, and to everybody until it has been heard. `announce` makes the network know this core, and ARP requests for its
+//! address are answered.
+//!
+//! Formats are `smoltcp::wire`'s. Every length that came from outside is checked there (`new_checked`, `parse`) before a byte
+//! behind it is touched; a frame that fails a check is dropped, and counted if it claimed to be UDP for this core.
+
+use smoltcp::phy::ChecksumCapabilities;
+use smoltcp::wire::{
+    ArpOperation, ArpPacket, ArpRepr, EthernetAddress, EthernetFrame, EthernetProtocol, EthernetRepr,
+    IpProtocol, Ipv4Address, Ipv4Packet, Ipv4Repr, UdpPacket, UdpRepr,
+};
+use wire::{Boot, MAX_PAYLOAD};
+
+use crate::{Network, SendError};
+
+const ETHERNET_LEN: usize = 14;
+const ARP_LEN: usize = 28;
+const IPV4_LEN: usize = 20;
+const UDP_LEN: usize = 8;
+
+/// The longest frame that means anything to a core, without its checksum; with some room for IPv4 options.
+pub const MAX_FRAME: usize = ETHERNET_LEN + IPV4_LEN + UDP_LEN + MAX_PAYLOAD + 44;
+
+/// Frames looked at in one call of `receive`: the network's own chatter must not keep a core from its work.
+const FRAMES_AT_ONCE: usize = 8;
+
+const HOP_LIMIT: u8 = 64;
+
+/// An Ethernet controller.
+pub trait Frames {
+    /// Sends one frame, given without its checksum. The controller pads short ones.
+    fn transmit(&mut self, frame: &[u8]) -> Result<(), SendError>;
+
+    /// Takes the next frame and returns its length; without the checksum, possibly with padding. Frames longer than the buffer
+    /// are dropped.
+    fn receive(&mut self, buffer: &mut [u8]) -> Option<usize>;
+
+    /// As [`Network::wait`].
+    fn wait(&mut self, ticks: u32);
+}
+
+/// UDP to and from the collector over an Ethernet controller.
+pub struct Ethernet<F> {
+    frames: F,
+    mac: EthernetAddress,
+    address: Ipv4Address,
+    collector: Ipv4Address,
+    collector_mac: EthernetAddress,
+    port: u16,
+    refused: u32,
+}
+
+impl<F: Frames> Ethernet<F> {
+    /// The network of the core that `boot` describes.
+    pub fn new(boot: &Boot<'_>, frames: F) -> Self {
+        Self {
+            frames,
+            mac: EthernetAddress(boot.mac()),
+            address: Ipv4Address::from(boot.address),
+            collector: Ipv4Address::from(boot.collector),
+            collector_mac: EthernetAddress::BROADCAST,
+            port: boot.port,
+            refused: 0,
+        }
+    }
+
+    /// Tells the network who has this address: a gratuitous ARP request.
+    pub fn announce(&mut self) -> Result<(), SendError> {
+        self.send_arp(
+            ArpOperation::Request,
+            EthernetAddress([0; 6]),
+            self.address,
+            EthernetAddress::BROADCAST,
+        )
+    }
+
+    fn send_arp(
+        &mut self,
+        operation: ArpOperation,
+        target_hardware_addr: EthernetAddress,
+        target_protocol_addr: Ipv4Address,
+        to: EthernetAddress,
+    ) -> Result<(), SendError> {
+        let repr = ArpRepr::EthernetIpv4 {
+            operation,
+            source_hardware_addr: self.mac,
+            source_protocol_addr: self.address,
+            target_hardware_addr,
+            target_protocol_addr,
+        };
+        let mut frame = [0; ETHERNET_LEN + ARP_LEN];
+        self.emit_ethernet(&mut frame, EthernetProtocol::Arp, to);
+        repr.emit(&mut ArpPacket::new_unchecked(&mut frame[ETHERNET_LEN..]));
+        self.frames.transmit(&frame)
+    }
+
+    fn emit_ethernet(&self, frame: &mut [u8], ethertype: EthernetProtocol, dst_addr: EthernetAddress) {
+        let repr = EthernetRepr {
+            src_addr: self.mac,
+            dst_addr,
+            ethertype,
+        };
+        repr.emit(&mut EthernetFrame::new_unchecked(frame));
+    }
+
+    /// Looks at one frame; gives the UDP payload if it is one for this core.
+    fn handle<'f>(&mut self, frame: &'f [u8]) -> Option<&'f [u8]> {
+        let frame = EthernetFrame::new_checked(frame).ok()?;
+        if frame.dst_addr() != self.mac && !frame.dst_addr().is_broadcast() {
+            return None;
+        }
+        match frame.ethertype() {
+            EthernetProtocol::Arp => {
+                self.handle_arp(frame.payload());
+                None
+            }
+            EthernetProtocol::Ipv4 => self.handle_ipv4(frame.src_addr(), frame.payload()),
+            _ => None,
+        }
+    }
+
+    fn handle_arp(&mut self, packet: &[u8]) {
+        let Ok(packet) = ArpPacket::new_checked(packet) else {
+            return;
+        };
+        let Ok(ArpRepr::EthernetIpv4 {
+            operation,
+            source_hardware_addr,
+            source_protocol_addr,
+            target_protocol_addr,
+            ..
+        }) = ArpRepr::parse(&packet)
+        else {
+            return;
+        };
+        self.learn(source_protocol_addr, source_hardware_addr);
+        if operation == ArpOperation::Request && target_protocol_addr == self.address {
+            // A lost answer is asked for again.
+            let _ = self.send_arp(
+                ArpOperation::Reply,
+                source_hardware_addr,
+                source_protocol_addr,
+                source_hardware_addr,
+            );
+        }
+    }
+
+    fn handle_ipv4<'f>(&mut self, from: EthernetAddress, packet: &'f [u8]) -> Option<&'f [u8]> {
+        let packet = Ipv4Packet::new_checked(packet).ok()?;
+        if packet.dst_addr() != self.address || packet.next_header() != IpProtocol::Udp {
+            return None;
+        }
+        let Some((source, payload)) = udp_payload(&packet, self.port) else {
+            self.refused = self.refused.wrapping_add(1);
+            return None;
+        };
+        self.learn(source, from);
+        Some(payload)
+    }
+
+    /// Remembers where the collector, or the router before it, was heard.
+    fn learn(&mut self, address: Ipv4Address, mac: EthernetAddress) {
+        if address == self.collector && mac.is_unicast() {
+            self.collector_mac = mac;
+        }
+    }
+}
+
+/// The source and the payload of a datagram for `port` whose checksums are right.
+fn udp_payload<'f>(packet: &Ipv4Packet<&'f [u8]>, port: u16) -> Option<(Ipv4Address, &'f [u8])> {
+    let checksums = ChecksumCapabilities::default();
+    let ip = Ipv4Repr::parse(packet, &checksums).ok()?;
+    let datagram = UdpPacket::new_checked(packet.payload()).ok()?;
+    let udp = UdpRepr::parse(&datagram, &ip.src_addr.into(), &ip.dst_addr.into(), &checksums).ok()?;
+    (udp.dst_port == port).then(|| (ip.src_addr, datagram.payload()))
+}
+
+impl<F: Frames> Network for Ethernet<F> {
+    fn send(&mut self, payload: &[u8]) -> Result<(), SendError> {
+        let mut frame = [0; MAX_FRAME];
+        let len = ETHERNET_LEN + IPV4_LEN + UDP_LEN + payload.len();
+        let frame = frame.get_mut(..len).ok_or(SendError)?;
+        self.emit_ethernet(frame, EthernetProtocol::Ipv4, self.collector_mac);
+        let ip = Ipv4Repr {
+            src_addr: self.address,
+            dst_addr: self.collector,
+            next_header: IpProtocol::Udp,
+            payload_len: UDP_LEN + payload.len(),
+            hop_limit: HOP_LIMIT,
+        };
+        let checksums = ChecksumCapabilities::default();
+        ip.emit(
+            &mut Ipv4Packet::new_unchecked(&mut frame[ETHERNET_LEN..]),
+            &checksums,
+        );
+        UdpRepr {
+            src_port: self.port,
+            dst_port: self.port,
+        }
+        .emit(
+            &mut UdpPacket::new_unchecked(&mut frame[ETHERNET_LEN + IPV4_LEN..]),
+            &ip.src_addr.into(),
+            &ip.dst_addr.into(),
+            payload.len(),
+            |room| room.copy_from_slice(payload),
+            &checksums,
+        );
+        self.frames.transmit(frame)
+    }
+
+    fn receive(&mut self, buffer: &mut [u8]) -> Option<usize> {
+        let mut frame = [0; MAX_FRAME];
+        for _ in 0..FRAMES_AT_ONCE {
+            let len = self.frames.receive(&mut frame)?;
+            if let Some(payload) = self.handle(frame.get(..len)?) {
+                let len = payload.len().min(buffer.len());
+                buffer[..len].copy_from_slice(&payload[..len]);
+                return Some(len);
+            }
+        }
+        None
+    }
+
+    fn wait(&mut self, ticks: u32) {
+        self.frames.wait(ticks);
+    }
+
+    fn refused(&self) -> u32 {
+        self.refused
+    }
+}

@@ -1,0 +1,126 @@
+//! Which unit comes next: the published free-running orders, and the leased one.
+
+use wire::Boot;
+use wire::boot::PixelOrder;
+
+use crate::leases::Leases;
+
+/// Where a core's units come from.
+#[derive(Debug)]
+pub(crate) enum Order {
+    /// The host says which.
+    Leased,
+    /// One after the other, wrapping at `units`.
+    Sequential { next: u32, units: u32 },
+    /// Drawn uniformly, each pixel run as likely as any other.
+    Stochastic { limit: u32, random: SplitMix },
+}
+
+impl Order {
+    /// The order the boot block asks for, over `runs` pixel runs and `units` units.
+    pub(crate) fn new(boot: &Boot<'_>, runs: u32, units: u32) -> Self {
+        match boot.order {
+            PixelOrder::Leased => Self::Leased,
+            PixelOrder::Sequential => {
+                let next = u64::from(boot.core) * u64::from(units) / u64::from(boot.cores);
+                Self::Sequential {
+                    next: next as u32,
+                    units,
+                }
+            }
+            PixelOrder::Stochastic => Self::Stochastic {
+                limit: last_whole_pass(runs),
+                random: SplitMix::new(boot.seed ^ u64::from(boot.core).rotate_right(16)),
+            },
+        }
+    }
+
+    /// The next unit; none while there is no lease.
+    pub(crate) fn next(&mut self, leases: &mut Leases) -> Option<u32> {
+        match self {
+            Self::Leased => leases.next(),
+            Self::Sequential { next, units } => {
+                let unit = *next;
+                *next = if unit + 1 < *units { unit + 1 } else { 0 };
+                Some(unit)
+            }
+            Self::Stochastic { limit, random } => loop {
+                // Less than half of all draws are thrown away, whatever the size of the picture.
+                let unit = random.next();
+                if unit <= *limit {
+                    return Some(unit);
+                }
+            },
+        }
+    }
+}
+
+/// The greatest unit id of the last whole pass that fits 32 bits: runs * floor(2^32 / runs) - 1.
+fn last_whole_pass(runs: u32) -> u32 {
+    let ids = 1u64 << 32;
+    (ids - ids % u64::from(runs) - 1) as u32
+}
+
+/// Steele, Lea and Flood's SplitMix64, of which the upper half is used. It chooses units only: what a unit looks like depends on
+/// its id and on nothing that is drawn here.
+#[derive(Debug)]
+pub(crate) struct SplitMix(u64);
+
+impl SplitMix {
+    fn new(seed: u64) -> Self {
+        Self(seed)
+    }
+
+    fn next(&mut self) -> u32 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mixed = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        ((mixed ^ (mixed >> 31)) >> 32) as u32
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_last_whole_pass_ends_on_a_run_boundary() {
+        assert_eq!(last_whole_pass(1), u32::MAX);
+        assert_eq!(last_whole_pass(192), u32::MAX - 64);
+        assert_eq!(last_whole_pass(3), u32::MAX - 1);
+        assert_eq!(last_whole_pass((1 << 31) + 1), 1 << 31);
+    }
+
+    /// The first output of the published generator for seed 0.
+    #[test]
+    fn splitmix_first_output() {
+        assert_eq!(SplitMix::new(0).next(), 0xE220_A839);
+    }
+
+    /// 64 runs drawn 64,000 times: chi-square with 63 degrees of freedom exceeds 103 once in a thousand.
+    #[test]
+    fn stochastic_units_cover_the_runs_evenly() {
+        let (mut counts, runs) = ([0u32; 64], 64);
+        let random = SplitMix::new(42);
+        let mut order = Order::Stochastic {
+            limit: last_whole_pass(runs),
+            random,
+        };
+        for _ in 0..64_000 {
+            let unit = order.next(&mut Leases::default()).unwrap();
+            counts[(unit % runs) as usize] += 1;
+        }
+        let chi2: f64 = counts
+            .iter()
+            .map(|&n| (f64::from(n) - 1000.0).powi(2) / 1000.0)
+            .sum();
+        assert!(chi2 < 103.0, "chi-square {chi2}");
+    }
+
+    #[test]
+    fn sequential_wraps() {
+        let mut order = Order::Sequential { next: 3, units: 5 };
+        let units: [_; 4] = core::array::from_fn(|_| order.next(&mut Leases::default()).unwrap());
+        assert_eq!(units, [3, 4, 0, 1]);
+    }
+}

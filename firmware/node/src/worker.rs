@@ -1,0 +1,239 @@
+//! The loop.
+
+use tracer::unit::{Plan, Sums};
+use wire::{
+    Boot, Farewell, FromCore, Hello, MAX_PAYLOAD, Name, Order as Command, PixelSums, Pixels, Report, ToCore,
+    VERSION,
+};
+
+use crate::leases::Leases;
+use crate::order::Order;
+use crate::{Clock, Fault, Network, TICKS_PER_SECOND};
+
+/// An idle core asks for work this often.
+const HELLO_EVERY: u32 = TICKS_PER_SECOND / 20;
+
+/// Times a packet is tried before the core gives up. Between two tries it takes what has arrived, which frees buffers, and rests.
+const SEND_TRIES: u32 = 16;
+
+/// The rest between two tries: a millisecond.
+const SEND_REST: u32 = TICKS_PER_SECOND / 1000;
+
+/// Packets taken at once at most, so that a flood of them cannot keep a core from its work.
+const RECEIVED_AT_ONCE: u32 = 16;
+
+/// FAREWELL is not answered, so it is said often enough for one to arrive.
+const FAREWELLS: u32 = 3;
+
+/// Renders one unit into the sums and returns how many rays it took.
+pub trait Renderer {
+    /// Overwrites `sums` with the unit's.
+    fn render(&mut self, unit: u32, sums: &mut Sums) -> u32;
+}
+
+impl<F: FnMut(u32, &mut Sums) -> u32> Renderer for F {
+    fn render(&mut self, unit: u32, sums: &mut Sums) -> u32 {
+        self(unit, sums)
+    }
+}
+
+/// How much of its stack a core has used. All zero where nobody measures.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct StackUse {
+    /// High-water mark in bytes.
+    pub used: u32,
+    /// Size in bytes.
+    pub size: u32,
+}
+
+/// What a core that was told to stop has done.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Outcome {
+    /// Units rendered.
+    pub units: u32,
+    /// Packets rejected.
+    pub rejected: u32,
+    /// Stack used.
+    pub stack: StackUse,
+}
+
+/// One core at work.
+pub struct Worker<'a, R, W, C> {
+    boot: &'a Boot<'a>,
+    scene: u32,
+    plan: Plan,
+    units: u32,
+    board: Name,
+    renderer: R,
+    network: W,
+    clock: C,
+    order: Order,
+    leases: Leases,
+    done: u32,
+    rejected: u32,
+    stopped: bool,
+}
+
+impl<'a, R: Renderer, W: Network, C: Clock> Worker<'a, R, W, C> {
+    /// A worker that has said nothing yet.
+    pub fn new(
+        boot: &'a Boot<'a>,
+        plan: Plan,
+        board: Name,
+        renderer: R,
+        network: W,
+        clock: C,
+    ) -> Result<Self, Fault> {
+        let units = plan.units().ok_or(Fault::Units)?;
+        let order = Order::new(boot, plan.runs(), units);
+        let (scene, leases) = (boot.scene_id(), Leases::default());
+        let (done, rejected, stopped) = (0, 0, false);
+        Ok(Self {
+            boot,
+            scene,
+            plan,
+            units,
+            board,
+            renderer,
+            network,
+            clock,
+            order,
+            leases,
+            done,
+            rejected,
+            stopped,
+        })
+    }
+
+    /// Works until told to stop.
+    pub fn run(mut self, mut stack: impl FnMut() -> StackUse) -> Result<Outcome, Fault> {
+        self.say_hello()?;
+        let mut last_hello = self.clock.ticks();
+        loop {
+            self.receive();
+            if self.stopped {
+                return self.say_farewell(stack());
+            }
+            if let Some(unit) = self.order.next(&mut self.leases) {
+                self.work(unit)?;
+                continue;
+            }
+            let since = self.clock.ticks().wrapping_sub(last_hello);
+            if since >= HELLO_EVERY {
+                self.say_hello()?;
+                last_hello = self.clock.ticks();
+            } else {
+                self.network.wait(HELLO_EVERY - since);
+            }
+        }
+    }
+
+    /// Renders one unit and sends it.
+    fn work(&mut self, unit: u32) -> Result<(), Fault> {
+        let mut sums = Sums::default();
+        let start = self.clock.ticks();
+        let rays = self.renderer.render(unit, &mut sums);
+        let ticks = self.clock.ticks().wrapping_sub(start);
+        let extent = self.plan.extent(unit);
+        let sums =
+            PixelSums::new(&sums[..usize::from(extent.pixels).min(sums.len())]).map_err(Fault::Sums)?;
+        self.say(Report::Pixels(Pixels {
+            unit,
+            epoch: self.boot.epoch,
+            samples: extent.samples,
+            scene: self.scene,
+            free_leases: self.leases.free(),
+            rejected: self.all_rejected() as u16,
+            ticks,
+            rays,
+            sums,
+        }))?;
+        self.done = self.done.wrapping_add(1);
+        Ok(())
+    }
+
+    /// Takes the packets that have arrived.
+    fn receive(&mut self) {
+        let mut buffer = [0; MAX_PAYLOAD + 1];
+        for _ in 0..RECEIVED_AT_ONCE {
+            let Some(len) = self.network.receive(&mut buffer) else {
+                return;
+            };
+            if !buffer.get(..len).is_some_and(|payload| self.obey(payload)) {
+                self.rejected = self.rejected.wrapping_add(1);
+            }
+        }
+    }
+
+    /// Does what a packet says; false where it is not for this core now.
+    fn obey(&mut self, payload: &[u8]) -> bool {
+        let Ok(ToCore { core, session, order }) = ToCore::decode(payload) else {
+            return false;
+        };
+        if core != self.boot.core || session != self.boot.session {
+            return false;
+        }
+        match order {
+            Command::Lease { number, first, count } => {
+                let last = first + (count - 1);
+                last < self.units && self.leases.take(number, first, last).is_ok()
+            }
+            Command::Stop => {
+                self.stopped = true;
+                true
+            }
+        }
+    }
+
+    fn say_hello(&mut self) -> Result<(), Fault> {
+        self.say(Report::Hello(Hello {
+            version: VERSION,
+            free_leases: self.leases.free(),
+            scene: self.scene,
+            board: self.board,
+            profile: self.boot.profile,
+        }))
+    }
+
+    fn say_farewell(&mut self, stack: StackUse) -> Result<Outcome, Fault> {
+        let outcome = Outcome {
+            units: self.done,
+            rejected: self.all_rejected(),
+            stack,
+        };
+        for _ in 0..FAREWELLS {
+            self.say(Report::Farewell(Farewell {
+                units: outcome.units,
+                rejected: outcome.rejected,
+                stack_used: stack.used,
+                stack_size: stack.size,
+            }))?;
+        }
+        Ok(outcome)
+    }
+
+    fn say(&mut self, report: Report<'_>) -> Result<(), Fault> {
+        let mut packet = [0; MAX_PAYLOAD];
+        // One PIXELS packet a unit, so the units done are the packet's number.
+        let seq = self.done as u16;
+        let len = FromCore {
+            core: self.boot.core,
+            seq,
+            session: self.boot.session,
+            report,
+        }
+        .encode(&mut packet);
+        for _ in 0..SEND_TRIES {
+            if self.network.send(&packet[..len]).is_ok() {
+                return Ok(());
+            }
+            self.receive();
+            self.network.wait(SEND_REST);
+        }
+        Err(Fault::Network)
+    }
+
+    fn all_rejected(&self) -> u32 {
+        self.rejected.wrapping_add(self.network.refused())
+    }
+}

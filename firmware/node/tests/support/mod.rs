@@ -1,0 +1,187 @@
+//! A core in a box: a worker, a network that loses what the test says, a clock that only moves when told, and a host played by
+//! the test.
+
+use std::cell::RefCell;
+use std::collections::VecDeque;
+use std::rc::Rc;
+
+use node::{Clock, Fault, Network, Outcome, SendError, StackUse, Worker};
+use tracer::unit::Sums;
+use wire::boot::PixelOrder;
+use wire::{Boot, FromCore, MAX_PAYLOAD, Name, Order, Pixels, Report, ToCore};
+
+pub(crate) const SESSION: u32 = 0xCAFE_F00D;
+pub(crate) const RENDER_TICKS: u32 = 1000;
+pub(crate) const STACK: StackUse = StackUse {
+    used: 321,
+    size: 4096,
+};
+
+/// A job of 12 runs and 2 passes: 24 units; the last run has 4 pixels.
+pub(crate) fn boot(order: PixelOrder) -> Boot<'static> {
+    Boot {
+        core: 1,
+        cores: 4,
+        session: SESSION,
+        epoch: 5,
+        width: 20,
+        height: 9,
+        samples_per_unit: 16,
+        spp: 24,
+        seed: 1,
+        epsilon: 16,
+        termination: 0,
+        order,
+        profile: Name::new("precise"),
+        collector: [10, 0, 2, 2],
+        port: 17893,
+        address: [10, 0, 2, 15],
+        scene: b"scene",
+    }
+}
+
+/// What a core said, kept apart from the packet's buffer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Said {
+    pub(crate) seq: u16,
+    pub(crate) report: Report<'static>,
+}
+
+impl Said {
+    pub(crate) fn pixels(&self) -> Option<Pixels> {
+        match self.report {
+            Report::Pixels(pixels) => Some(pixels),
+            _ => None,
+        }
+    }
+
+    pub(crate) fn is_hello(&self) -> bool {
+        matches!(self.report, Report::Hello(_))
+    }
+}
+
+/// What the network and the clock share.
+#[derive(Default)]
+pub(crate) struct World {
+    pub(crate) now: u32,
+    pub(crate) inbox: VecDeque<Vec<u8>>,
+    pub(crate) said: Vec<Said>,
+    /// Sends that fail before one gets through.
+    pub(crate) refuse_sends: u32,
+}
+
+impl World {
+    pub(crate) fn post(&mut self, order: Order) {
+        self.inbox.push_back(packet(1, SESSION, order));
+    }
+
+    pub(crate) fn lease(&mut self, number: u16, first: u32, count: u32) {
+        self.post(Order::Lease { number, first, count });
+    }
+
+    pub(crate) fn units(&self) -> Vec<u32> {
+        self.said
+            .iter()
+            .filter_map(Said::pixels)
+            .map(|pixels| pixels.unit)
+            .collect()
+    }
+}
+
+pub(crate) fn packet(core: u16, session: u32, order: Order) -> Vec<u8> {
+    let mut out = [0; MAX_PAYLOAD];
+    let len = ToCore { core, session, order }.encode(&mut out);
+    out[..len].to_vec()
+}
+
+/// The network calls `host` with everything that arrives there.
+struct FakeNetwork<H> {
+    world: Rc<RefCell<World>>,
+    host: H,
+}
+
+impl<H: FnMut(&mut World, Said)> Network for FakeNetwork<H> {
+    fn send(&mut self, payload: &[u8]) -> Result<(), SendError> {
+        let mut world = self.world.borrow_mut();
+        if world.refuse_sends > 0 {
+            world.refuse_sends -= 1;
+            return Err(SendError);
+        }
+        let FromCore {
+            core,
+            seq,
+            session,
+            report,
+        } = FromCore::decode(payload).expect("a core sends valid packets");
+        assert_eq!((core, session), (1, SESSION));
+        let said = Said {
+            seq,
+            report: owned(report),
+        };
+        world.said.push(said);
+        assert!(world.said.len() < 10_000, "the worker does not come to an end");
+        (self.host)(&mut world, said);
+        Ok(())
+    }
+
+    fn receive(&mut self, buffer: &mut [u8]) -> Option<usize> {
+        let payload = self.world.borrow_mut().inbox.pop_front()?;
+        let len = payload.len().min(buffer.len());
+        buffer[..len].copy_from_slice(&payload[..len]);
+        Some(len)
+    }
+
+    fn wait(&mut self, ticks: u32) {
+        let mut world = self.world.borrow_mut();
+        if world.inbox.is_empty() {
+            world.now = world.now.wrapping_add(ticks);
+        }
+    }
+}
+
+fn owned(report: Report<'_>) -> Report<'static> {
+    match report {
+        Report::Fault(words) => Report::Fault(String::from(words).leak()),
+        Report::Hello(hello) => Report::Hello(hello),
+        Report::Pixels(pixels) => Report::Pixels(pixels),
+        Report::Farewell(farewell) => Report::Farewell(farewell),
+    }
+}
+
+struct FakeClock(Rc<RefCell<World>>);
+
+impl Clock for FakeClock {
+    fn ticks(&mut self) -> u32 {
+        self.0.borrow().now
+    }
+}
+
+/// Runs a core until it ends. A unit takes [`RENDER_TICKS`], and its first sum is its id.
+pub(crate) fn run(
+    boot: &Boot<'_>,
+    world: World,
+    host: impl FnMut(&mut World, Said),
+) -> (Result<Outcome, Fault>, World) {
+    let world = Rc::new(RefCell::new(world));
+    let network = FakeNetwork {
+        world: world.clone(),
+        host,
+    };
+    let renderer = |unit: u32, sums: &mut Sums| {
+        let mut world = world.borrow_mut();
+        world.now = world.now.wrapping_add(RENDER_TICKS);
+        sums[0] = [u64::from(unit), 0, wire::SUM_MAX];
+        7
+    };
+    let clock = FakeClock(world.clone());
+    let worker = Worker::new(
+        boot,
+        node::plan(boot),
+        Name::new("fake"),
+        renderer,
+        network,
+        clock,
+    );
+    let outcome = worker.and_then(|worker| worker.run(|| STACK));
+    (outcome, world.take())
+}
