@@ -4,6 +4,7 @@
 //! could not hold: whatever it returns has values within the 16:16 range, a light, and a camera in free space. Turning
 //! it into the bytes a core reads is the scene compiler's business.
 
+mod limits;
 mod parse;
 mod validate;
 
