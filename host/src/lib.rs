@@ -1,9 +1,14 @@
 //! Stub.
 
+pub mod arithmetic;
 pub mod collector;
 pub mod file;
 pub mod film;
+pub mod fleet;
+pub mod lockstep;
 pub mod openexr;
 pub mod picture;
+pub mod reference;
 pub mod scene;
+pub mod session;
 pub mod setup;
