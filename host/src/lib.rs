@@ -2,6 +2,7 @@
 
 pub mod arithmetic;
 pub mod collector;
+pub mod compare;
 pub mod file;
 pub mod film;
 pub mod fleet;

@@ -1,0 +1,141 @@
+//! The comparison by tiles.
+
+use statrs::distribution::{ContinuousCDF, Normal};
+
+use super::Pair;
+
+/// Side of a tile in pixels; at the right and bottom edges a tile is what is left.
+pub const TILE: u16 = 8;
+
+/// How often the tile test may fail a picture that has no error: one picture in a hundred.
+pub const FALSE_ALARM: f64 = 0.01;
+
+/// A tile whose reference is darker than this share of the picture's mean is measured against that share instead: a bias
+/// relative to next to nothing says nothing.
+const DIMMEST: f64 = 0.01;
+
+/// Every tile against its own confidence interval.
+///
+/// A test is one channel of one tile: the difference summed over its pixels, over the root of the summed variance. With
+/// so many tests some are extreme by chance, so the threshold is Šidák's: all tests together raise a false alarm in one
+/// picture of a hundred ([`FALSE_ALARM`]). The channels of a tile are not independent, which makes it rarer still.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tiles {
+    /// Tests made: three for every tile that has a pixel on both sides.
+    pub tested: usize,
+    /// The z-score, up or down, that a test must stay within.
+    pub threshold_z: f64,
+    /// The z-score of the largest magnitude, with its sign. Infinite where there is a difference without any noise.
+    pub max_z: f64,
+    /// Tests beyond the threshold.
+    pub failed: Vec<TileFault>,
+    /// The bias of the largest magnitude among the tiles, with its sign: over all channels, relative to the tile's own
+    /// reference (or 1 % of the picture's mean, if that is more). Noise and all: read it beside `max_tile_bias_noise`.
+    pub max_tile_bias: f64,
+    /// Upper bound of the standard error of `max_tile_bias`.
+    pub max_tile_bias_noise: f64,
+}
+
+/// A tile that noise does not explain.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TileFault {
+    /// Column of its left pixels.
+    pub x: u16,
+    /// Row of its top pixels.
+    pub y: u16,
+    /// 0, 1, 2: red, green, blue.
+    pub channel: usize,
+    /// How many standard deviations it is off.
+    pub z: f64,
+}
+
+/// Sums over the pixels of one tile.
+#[derive(Clone, Copy, Default)]
+struct Sums {
+    pixels: usize,
+    difference: [f64; 3],
+    reference: f64,
+    variance: [f64; 3],
+}
+
+/// Tests the tiles of a picture of `size`, whose reference has the mean `level`.
+pub(super) fn test(pixels: &[Option<Pair>], size: (u16, u16), level: f64) -> Tiles {
+    let places: Vec<(u16, u16)> = (0..size.1)
+        .step_by(usize::from(TILE))
+        .flat_map(|y| (0..size.0).step_by(usize::from(TILE)).map(move |x| (x, y)))
+        .collect();
+    let tiles: Vec<(u16, u16, Sums)> = places
+        .into_iter()
+        .map(|(x, y)| (x, y, sums(pixels, size, x, y)))
+        .filter(|(_, _, sums)| sums.pixels > 0)
+        .collect();
+    let tested = 3 * tiles.len();
+    let threshold_z = sidak_threshold(tested);
+    let mut verdict = Tiles {
+        tested,
+        threshold_z,
+        max_z: 0.0,
+        failed: Vec::new(),
+        max_tile_bias: 0.0,
+        max_tile_bias_noise: 0.0,
+    };
+    for (x, y, sums) in tiles {
+        let (bias, noise) = bias(&sums, level);
+        if bias.abs() > verdict.max_tile_bias.abs() {
+            (verdict.max_tile_bias, verdict.max_tile_bias_noise) = (bias, noise);
+        }
+        for channel in 0..3 {
+            let z = z_score(sums.difference[channel], sums.variance[channel]);
+            if z.abs() > verdict.max_z.abs() {
+                verdict.max_z = z;
+            }
+            if z.abs() > threshold_z {
+                verdict.failed.push(TileFault { x, y, channel, z });
+            }
+        }
+    }
+    verdict
+}
+
+fn sums(pixels: &[Option<Pair>], (width, height): (u16, u16), x: u16, y: u16) -> Sums {
+    let mut sums = Sums::default();
+    for row in y..y.saturating_add(TILE).min(height) {
+        for column in x..x.saturating_add(TILE).min(width) {
+            let index = usize::from(row) * usize::from(width) + usize::from(column);
+            let Some(pair) = &pixels[index] else { continue };
+            sums.pixels += 1;
+            for channel in 0..3 {
+                sums.difference[channel] += pair.difference(channel);
+                sums.reference += pair.reference[channel];
+                sums.variance[channel] += pair.variance[channel];
+            }
+        }
+    }
+    sums
+}
+
+/// A tile's relative bias over all channels, and the most its standard error can be.
+fn bias(sums: &Sums, level: f64) -> (f64, f64) {
+    let difference: f64 = sums.difference.iter().sum();
+    let noise: f64 = sums.variance.iter().map(|variance| variance.sqrt()).sum();
+    let measure = sums.reference.max(DIMMEST * level * (3 * sums.pixels) as f64);
+    if measure > 0.0 {
+        (difference / measure, noise / measure)
+    } else {
+        (0.0, 0.0)
+    }
+}
+
+fn z_score(difference: f64, variance: f64) -> f64 {
+    if difference == 0.0 {
+        0.0
+    } else {
+        difference / variance.sqrt()
+    }
+}
+
+/// The z-score within which all of `tests` independent tests stay with probability 1 - [`FALSE_ALARM`].
+pub(super) fn sidak_threshold(tests: usize) -> f64 {
+    let one = 1.0 - (1.0 - FALSE_ALARM).powf(1.0 / tests.max(1) as f64);
+    Normal::standard().inverse_cdf(1.0 - one / 2.0)
+}
