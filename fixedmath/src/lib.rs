@@ -24,4 +24,4 @@ pub mod random;
 pub mod root;
 pub mod unit;
 
-pub use fixed::types::{I2F30, I16F16, I32F32, U0F32};
+pub use fixed::types::{I2F30, I16F16, I32F32, I48F16};

@@ -156,8 +156,8 @@ const fn upper_of(a: u32, b: u32, shift: u32) -> u32 {
 #[inline]
 pub(crate) const fn reciprocal_seed(x: u32) -> u32 {
     let line = LINES[(x >> 26) as usize - 16];
-    let along = x << 6 >> 16;
-    let y = (line & 0x1_ffff) - ((line >> 17) * along >> 16);
+    let along = (x << 6) >> 16;
+    let y = (line & 0x1_ffff) - (((line >> 17) * along) >> 16);
     // x y^2 is 1 - e: the wrap of 32 bits takes the 1 away.
     let root = upper_of(x, y, 16);
     let e = upper_of(root, y, 16).wrapping_neg() as i32;

@@ -24,10 +24,12 @@ pub mod ethernet;
 mod fault;
 mod leases;
 mod order;
+mod words;
 mod worker;
 
 pub use fault::Fault;
 pub use leases::LEASES;
+pub use words::Words;
 pub use worker::{Outcome, Renderer, StackUse, Worker};
 
 use tracer::profile::Profile;
@@ -80,24 +82,21 @@ impl core::error::Error for SendError {}
 pub fn run<P: Profile, N: Needs>(
     boot: &Boot<'_>,
     board: Name,
-    network: impl Network,
-    clock: impl Clock,
-    stack: impl FnMut() -> StackUse,
+    mut network: impl Network,
+    mut clock: impl Clock,
+    stack: fn() -> StackUse,
 ) -> Result<Outcome, Fault> {
     if boot.profile != Name::new(P::NAME) {
-        return Err(Fault::Profile {
-            wanted: boot.profile,
-            built: Name::new(P::NAME),
-        });
+        return Err(Fault::Profile);
     }
-    let scene = Scene::<P>::decode(boot.scene).map_err(|_| Fault::Scene)?;
+    let scene = Scene::<P::Numbers>::decode::<N>(boot.scene).map_err(Fault::from)?;
     let plan = plan(boot);
-    let renderer = |unit, sums: &mut Sums| tracer::unit::render::<P, N>(&scene, &plan, unit, sums);
-    Worker::new(boot, plan, board, renderer, network, clock)?.run(stack)
+    let mut renderer = |unit, sums: &mut Sums| tracer::unit::render::<P, N>(&scene, &plan, unit, sums);
+    Worker::new(boot, plan, board, &mut renderer, &mut network, &mut clock)?.run(stack)
 }
 
 /// Tells the host why this core ends. Tries once: who sends this has little left to rely on.
-pub fn last_words(boot: &Boot<'_>, network: &mut impl Network, words: &str) -> Result<(), SendError> {
+pub fn last_words(boot: &Boot<'_>, network: &mut dyn Network, words: &str) -> Result<(), SendError> {
     let mut packet = [0; MAX_PAYLOAD];
     let report = Report::Fault(words);
     let len = FromCore {

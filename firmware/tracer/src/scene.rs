@@ -1,6 +1,15 @@
-//! The compiled scene.
+//! The compiled scene: a blob the host writes, and what a tracer decodes from it.
 
-use core::marker::PhantomData;
+mod blob;
+
+pub use blob::{BlobError, CameraRecord, HEADER_BYTES, Header, MaterialRecord, SPHERE_BYTES, SphereRecord};
+
+use crate::camera::{Axis, Camera};
+use crate::material::{Bsdf, Dielectric, Surface};
+use crate::numbers::Numbers;
+
+/// Spheres in a scene, at most: what a core's data memory holds beside its stacks.
+pub const MAX_SPHERES: usize = 64;
 
 /// What a scene needs of the tracer; code for the rest is not in the image.
 pub trait Needs {
@@ -25,20 +34,151 @@ impl Needs for All {
     const ROULETTE: bool = true;
 }
 
-/// Why a blob was refused.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum BlobError {
-    /// The blob ends before its contents do.
-    Truncated,
+/// A sphere.
+#[derive(Clone, Copy, Debug)]
+pub struct Sphere<N: Numbers> {
+    /// Centre.
+    pub centre: [N::Length; 3],
+    /// Radius squared.
+    pub square: N::Square,
+    /// Radius.
+    pub radius: N::Length,
+    /// What divides by the radius.
+    pub reciprocal: N::Reciprocal,
+    /// Whether it is seen from inside, everything outside being solid.
+    pub hollow: bool,
+    /// Its surface.
+    pub surface: Surface<N>,
 }
 
-/// A scene decoded for profile `P`.
+/// A scene in the formats of `N`.
 #[derive(Debug)]
-pub struct Scene<P>(PhantomData<P>);
+pub struct Scene<N: Numbers> {
+    /// The camera.
+    pub camera: Camera<N>,
+    spheres: [Sphere<N>; MAX_SPHERES],
+    hollow: usize,
+    count: usize,
+}
 
-impl<P: crate::profile::Profile> Scene<P> {
-    /// Decodes a blob written by the host's scene compiler.
-    pub fn decode(_blob: &[u8]) -> Result<Self, BlobError> {
-        Ok(Self(PhantomData))
+impl<N: Numbers> Scene<N> {
+    /// Decodes a blob written by the host's scene compiler, for an image built with `F`.
+    pub fn decode<F: Needs>(blob: &[u8]) -> Result<Self, BlobError> {
+        let (header, rest) = Header::decode(blob)?;
+        let (hollow, count) = (usize::from(header.hollow), usize::from(header.spheres));
+        if count > MAX_SPHERES || hollow > count || rest.len() != count * SPHERE_BYTES {
+            return Err(BlobError::BadCounts);
+        }
+        let mut spheres = [Sphere::unused(); MAX_SPHERES];
+        for (i, (sphere, bytes)) in spheres
+            .iter_mut()
+            .zip(rest.chunks_exact(SPHERE_BYTES))
+            .enumerate()
+        {
+            let record = SphereRecord::decode(bytes)?;
+            let supported = match record.material {
+                MaterialRecord::Diffuse => F::DIFFUSE || record.survival == 0,
+                MaterialRecord::Mirror => F::MIRROR,
+                MaterialRecord::Glass { .. } => F::GLASS,
+            };
+            if !supported {
+                return Err(BlobError::NotInThisImage);
+            }
+            *sphere = Sphere::of_record(&record, i < hollow);
+        }
+        Ok(Self {
+            camera: Camera::of_record(&header.camera),
+            spheres,
+            hollow,
+            count,
+        })
+    }
+
+    /// All spheres, hollow ones first.
+    pub fn spheres(&self) -> &[Sphere<N>] {
+        self.spheres.get(..self.count).unwrap_or_default()
+    }
+
+    /// The spheres seen from inside.
+    pub fn hollow(&self) -> &[Sphere<N>] {
+        self.spheres.get(..self.hollow).unwrap_or_default()
+    }
+
+    /// The spheres seen from outside.
+    pub fn solid(&self) -> &[Sphere<N>] {
+        self.spheres.get(self.hollow..self.count).unwrap_or_default()
+    }
+}
+
+impl<N: Numbers> Sphere<N> {
+    fn unused() -> Self {
+        Self::of_record(
+            &SphereRecord {
+                centre: [0; 3],
+                radius: 0,
+                square: 0,
+                reciprocal: 0,
+                shift: 0,
+                emission: [0; 3],
+                reflectance: [0; 3],
+                survivor: [0; 3],
+                survival: 0,
+                material: MaterialRecord::Diffuse,
+            },
+            false,
+        )
+    }
+
+    fn of_record(record: &SphereRecord, hollow: bool) -> Self {
+        let bsdf = match record.material {
+            MaterialRecord::Diffuse => Bsdf::Diffuse,
+            MaterialRecord::Mirror => Bsdf::Mirror,
+            MaterialRecord::Glass {
+                index,
+                inverse,
+                normal_reflectance,
+            } => {
+                let (entering, leaving) = (N::ratio(inverse), N::ratio(index));
+                Bsdf::Glass(Dielectric {
+                    entering,
+                    entering_squared: N::ratio_squared(entering),
+                    leaving,
+                    leaving_squared: N::ratio_squared(leaving),
+                    normal_reflectance: N::unit(normal_reflectance),
+                })
+            }
+        };
+        Self {
+            centre: record.centre.map(N::length),
+            square: N::square(record.square),
+            radius: N::length(record.radius),
+            reciprocal: N::reciprocal(record.radius, record.reciprocal, record.shift),
+            hollow,
+            surface: Surface {
+                emission: record.emission,
+                reflectance: record.reflectance.map(N::weight),
+                survivor: record.survivor.map(N::weight),
+                survival: N::unit(record.survival),
+                bsdf,
+            },
+        }
+    }
+}
+
+impl<N: Numbers> Camera<N> {
+    fn of_record(record: &CameraRecord) -> Self {
+        let axis = |(subpixels, reciprocal)| Axis {
+            subpixels,
+            reciprocal,
+        };
+        Self {
+            position: record.position.map(N::length),
+            forward: record.forward.map(N::unit),
+            right: record.right.map(N::unit),
+            up: record.up.map(N::unit),
+            near: N::length(record.near),
+            columns: axis(record.columns),
+            rows: axis(record.rows),
+        }
     }
 }

@@ -1,19 +1,15 @@
 //! The work unit: a pure function of scene, plan and unit id.
 
+use crate::integrator::{Path, Sample};
+use crate::numbers::Numbers;
 use crate::profile::Profile;
+use crate::random::Random;
 use crate::scene::{Needs, Scene};
+
+pub use crate::integrator::Termination;
 
 /// Pixels in a unit: a run of the picture in row-major order, the top row first.
 pub const RUN: usize = 16;
-
-/// When a path ends.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Termination {
-    /// Russian roulette from the fifth bounce on.
-    Roulette,
-    /// After this many surfaces.
-    Depth(u8),
-}
 
 /// What all units of one picture share.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,15 +65,62 @@ impl Plan {
         let full = u32::from(self.samples_per_unit);
         let left = self.spp.saturating_sub(pass.saturating_mul(full));
         let samples = if left == 0 { full } else { left.min(full) };
-        Extent { first_pixel, pixels: (all - first_pixel).min(RUN as u32) as u8, samples: samples as u16 }
+        Extent {
+            first_pixel,
+            pixels: (all - first_pixel).min(RUN as u32) as u8,
+            samples: samples as u16,
+        }
     }
 }
 
 /// Sums of radiance over one unit's samples: red, green, blue of each pixel in 24:16.
 pub type Sums = [[u64; 3]; RUN];
 
-/// Renders unit `id` into `sums` and returns how many rays it took.
-pub fn render<P: Profile, N: Needs>(_scene: &Scene<P>, plan: &Plan, id: u32, sums: &mut Sums) -> u32 {
-    *sums = [[u64::from(plan.seed as u32 ^ id); 3]; RUN];
-    0
+/// Walks the samples of unit `id` in their fixed order and hands each to `take` with its pixel's place in the unit.
+///
+/// A pixel's samples are spread evenly over its 2x2 sub-pixels. One random stream runs through the whole unit.
+#[inline]
+pub fn walk<P: Profile, F: Needs>(
+    scene: &Scene<P::Numbers>,
+    plan: &Plan,
+    id: u32,
+    mut take: impl FnMut(usize, Sample<P::Numbers>),
+) {
+    let extent = plan.extent(id);
+    let path = Path::<P, F>::new(scene, plan.termination, plan.epsilon);
+    let mut random = P::Random::for_unit(plan.seed, id);
+    let width = u32::from(plan.width);
+    let (mut column, mut row) = (extent.first_pixel % width, extent.first_pixel / width);
+    for pixel in 0..usize::from(extent.pixels) {
+        let (left, below) = (2 * column, 2 * (u32::from(plan.height) - 1 - row));
+        for subpixel in 0..4 {
+            for _ in 0..extent.samples / 4 {
+                let ray = scene
+                    .camera
+                    .ray(left + (subpixel & 1), below + (subpixel >> 1), &mut random);
+                take(pixel, path.sample(ray, &mut random));
+            }
+        }
+        column += 1;
+        if column == width {
+            (column, row) = (0, row + 1);
+        }
+    }
+}
+
+/// Renders unit `id` into `sums` and returns how many rays it took. Pixels past the picture's end are zero.
+pub fn render<P: Profile, F: Needs>(scene: &Scene<P::Numbers>, plan: &Plan, id: u32, sums: &mut Sums) -> u32 {
+    *sums = [[0; 3]; RUN];
+    let mut rays = 0;
+    walk::<P, F>(scene, plan, id, |pixel, sample| {
+        rays += sample.rays;
+        for (sum, radiance) in sums[pixel].iter_mut().zip(sample.radiance) {
+            *sum = sum.saturating_add(P::Numbers::radiance_bits(radiance));
+        }
+    });
+    // Summed in 32:32 and rounded once.
+    for sum in sums.as_flattened_mut() {
+        *sum = (*sum >> 16) + (*sum >> 15 & 1);
+    }
+    rays
 }

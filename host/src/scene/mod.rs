@@ -4,11 +4,14 @@
 //! could not hold: whatever it returns has values within the 16:16 range, a light, and a camera in free space. Turning
 //! it into the bytes a core reads is the scene compiler's business.
 
+mod compile;
 mod limits;
 mod parse;
 mod validate;
 
 use std::path::{Path, PathBuf};
+
+pub use compile::{CompiledScene, SceneNeeds, compile};
 
 /// A checked scene.
 #[derive(Clone, Debug, PartialEq)]

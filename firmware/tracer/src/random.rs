@@ -1,0 +1,58 @@
+//! Random numbers: one stream a unit.
+
+use fixedmath::random::{Lcg32, Lcg64};
+
+/// A stream of uniform fractions that belongs to one unit of one render.
+pub trait Random {
+    /// The stream of unit `id` in the render seeded with `seed`.
+    fn for_unit(seed: u64, id: u32) -> Self;
+
+    /// The next number, as the 32 bits of a fraction in [0, 1).
+    fn fraction(&mut self) -> u32;
+}
+
+/// 2^64 over the golden ratio, made odd. Multiples of it by 0, 1, 2, ... keep as far apart as any sequence can: the
+/// first `n` are at least 2^64 / (2.24 n) steps from each other, 10^9 for 2^32 units, which draw far fewer.
+const STRIDE: u64 = 0x9e37_79b9_7f4a_7c15;
+
+/// Spreads a seed over all bits (the finaliser of D. Stafford's variant 13, as in SplitMix64), so that seeds 1 and 2
+/// start far apart.
+fn spread(seed: u64) -> u64 {
+    let z = (seed ^ (seed >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
+}
+
+/// The upper half of a 64-bit generator's state: period 2^64.
+#[derive(Clone, Debug)]
+pub struct FullState(Lcg64);
+
+impl Random for FullState {
+    fn for_unit(seed: u64, id: u32) -> Self {
+        let mut generator = Lcg64::new(spread(seed));
+        generator.jump(u64::from(id).wrapping_mul(STRIDE));
+        Self(generator)
+    }
+
+    #[inline]
+    fn fraction(&mut self) -> u32 {
+        self.0.next_fraction()
+    }
+}
+
+/// The published use of a 32-bit generator: the low 16 bits, which repeat after 65,536 draws.
+#[derive(Clone, Debug)]
+pub struct LowBits(Lcg32);
+
+impl Random for LowBits {
+    fn for_unit(seed: u64, id: u32) -> Self {
+        let mut generator = Lcg32::new(spread(seed) as u32);
+        generator.jump(id.wrapping_mul((STRIDE >> 32) as u32));
+        Self(generator)
+    }
+
+    #[inline]
+    fn fraction(&mut self) -> u32 {
+        u32::from(self.0.low_bits()) << 16
+    }
+}
