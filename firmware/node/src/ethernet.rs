@@ -43,8 +43,8 @@ pub trait Frames {
 }
 
 /// UDP to and from the collector over an Ethernet controller.
-pub struct Ethernet<F> {
-    frames: F,
+pub struct Ethernet<'a> {
+    frames: &'a mut dyn Frames,
     mac: EthernetAddress,
     address: Ipv4Address,
     collector: Ipv4Address,
@@ -53,9 +53,9 @@ pub struct Ethernet<F> {
     refused: u32,
 }
 
-impl<F: Frames> Ethernet<F> {
+impl<'a> Ethernet<'a> {
     /// The network of the core that `boot` describes.
-    pub fn new(boot: &Boot<'_>, frames: F) -> Self {
+    pub fn new(boot: &Boot<'_>, frames: &'a mut dyn Frames) -> Self {
         Self {
             frames,
             mac: EthernetAddress(boot.mac()),
@@ -178,7 +178,7 @@ fn udp_payload<'f>(packet: &Ipv4Packet<&'f [u8]>, port: u16) -> Option<(Ipv4Addr
     (udp.dst_port == port).then(|| (ip.src_addr, datagram.payload()))
 }
 
-impl<F: Frames> Network for Ethernet<F> {
+impl Network for Ethernet<'_> {
     fn send(&mut self, payload: &[u8]) -> Result<(), SendError> {
         let mut frame = [0; MAX_FRAME];
         let len = ETHERNET_LEN + IPV4_LEN + UDP_LEN + payload.len();

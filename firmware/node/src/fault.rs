@@ -2,20 +2,18 @@
 
 use core::fmt;
 
-use wire::{Name, SumsError};
+use tracer::scene::BlobError;
+use wire::SumsError;
 
 /// Why a core ends without having been told to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
     /// The image was built for another arithmetic profile than the job is for.
-    Profile {
-        /// What the boot block asks for.
-        wanted: Name,
-        /// What the image was built with.
-        built: Name,
-    },
+    Profile,
     /// The scene blob is not one that this image can decode.
     Scene,
+    /// The scene needs a material that this image was built without.
+    Material,
     /// The picture has more units than there are ids.
     Units,
     /// The network took no packet in several tries.
@@ -24,22 +22,34 @@ pub enum Fault {
     Sums(SumsError),
 }
 
+impl Fault {
+    /// The fault in words, without formatting, for which boards have no room.
+    pub const fn as_str(self) -> &'static str {
+        match self {
+            Self::Profile => "this image was built for another arithmetic profile than the job is for",
+            Self::Scene => "the scene blob does not decode: host and image are of different versions",
+            Self::Material => {
+                "the scene needs a material that this image was built without: see TRACER_NEEDS"
+            }
+            Self::Units => "the picture has more units than ids: raise the samples per unit",
+            Self::Network => "the network takes no packets",
+            Self::Sums(error) => error.as_str(),
+        }
+    }
+}
+
+impl From<BlobError> for Fault {
+    fn from(error: BlobError) -> Self {
+        match error {
+            BlobError::NotInThisImage => Self::Material,
+            _ => Self::Scene,
+        }
+    }
+}
+
 impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Profile { wanted, built } => {
-                f.write_str("the job is for profile ")?;
-                f.write_str(wanted.as_str())?;
-                f.write_str(", this image was built for ")?;
-                f.write_str(built.as_str())
-            }
-            Self::Scene => {
-                f.write_str("the scene blob does not decode: host and image are of different versions")
-            }
-            Self::Units => f.write_str("the picture has more units than ids: raise samples per unit"),
-            Self::Network => f.write_str("the network takes no packets"),
-            Self::Sums(error) => error.fmt(f),
-        }
+        f.write_str(self.as_str())
     }
 }
 

@@ -58,15 +58,18 @@ pub struct Outcome {
 }
 
 /// One core at work.
-pub struct Worker<'a, R, W, C> {
+///
+/// The three traits are called through pointers, a few times a unit: that keeps the loop one piece of code, compiled for size,
+/// apart from the renderer, compiled for speed.
+pub struct Worker<'a> {
     boot: &'a Boot<'a>,
     scene: u32,
     plan: Plan,
     units: u32,
     board: Name,
-    renderer: R,
-    network: W,
-    clock: C,
+    renderer: &'a mut dyn Renderer,
+    network: &'a mut dyn Network,
+    clock: &'a mut dyn Clock,
     order: Order,
     leases: Leases,
     done: u32,
@@ -74,15 +77,15 @@ pub struct Worker<'a, R, W, C> {
     stopped: bool,
 }
 
-impl<'a, R: Renderer, W: Network, C: Clock> Worker<'a, R, W, C> {
+impl<'a> Worker<'a> {
     /// A worker that has said nothing yet.
     pub fn new(
         boot: &'a Boot<'a>,
         plan: Plan,
         board: Name,
-        renderer: R,
-        network: W,
-        clock: C,
+        renderer: &'a mut dyn Renderer,
+        network: &'a mut dyn Network,
+        clock: &'a mut dyn Clock,
     ) -> Result<Self, Fault> {
         let units = plan.units().ok_or(Fault::Units)?;
         let order = Order::new(boot, plan.runs(), units);
@@ -106,7 +109,8 @@ impl<'a, R: Renderer, W: Network, C: Clock> Worker<'a, R, W, C> {
     }
 
     /// Works until told to stop.
-    pub fn run(mut self, mut stack: impl FnMut() -> StackUse) -> Result<Outcome, Fault> {
+    #[inline(never)] // a caller compiled for speed would copy the loop's parts into itself
+    pub fn run(mut self, stack: fn() -> StackUse) -> Result<Outcome, Fault> {
         self.say_hello()?;
         let mut last_hello = self.clock.ticks();
         loop {
@@ -212,6 +216,7 @@ impl<'a, R: Renderer, W: Network, C: Clock> Worker<'a, R, W, C> {
         Ok(outcome)
     }
 
+    #[inline(never)]
     fn say(&mut self, report: Report<'_>) -> Result<(), Fault> {
         let mut packet = [0; MAX_PAYLOAD];
         // One PIXELS packet a unit, so the units done are the packet's number.

@@ -35,7 +35,7 @@ impl Frames for Cable {
 }
 
 /// Core 259 at 10.0.2.15, its collector at 10.0.2.2, port 17893 (0x45E5).
-fn ethernet() -> (Ethernet<Cable>, Cable) {
+fn ethernet() -> (Ethernet<'static>, Cable) {
     let boot = Boot {
         core: 259,
         cores: 260,
@@ -56,7 +56,7 @@ fn ethernet() -> (Ethernet<Cable>, Cable) {
         scene: &[],
     };
     let cable = Cable::default();
-    (Ethernet::new(&boot, cable.clone()), cable)
+    (Ethernet::new(&boot, Box::leak(Box::new(cable.clone()))), cable)
 }
 
 /// A datagram from the collector, as slirp sends it; its payload is `hi!`. Checksums by Python.
@@ -75,7 +75,7 @@ const ARP_REQUEST: [u8; 42] = [
     0, 0, 0, 0, 0, 0, 10, 0, 2, 15,
 ];
 
-fn received(ethernet: &mut Ethernet<Cable>, cable: &Cable, frame: &[u8]) -> Option<Vec<u8>> {
+fn received(ethernet: &mut Ethernet<'static>, cable: &Cable, frame: &[u8]) -> Option<Vec<u8>> {
     cable.to_core.borrow_mut().push_back(frame.to_vec());
     let mut buffer = [0xa5; 300];
     ethernet.receive(&mut buffer).map(|len| buffer[..len].to_vec())

@@ -27,26 +27,31 @@ pub enum DecodeError {
     Checksum,
 }
 
-impl fmt::Display for DecodeError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
+impl DecodeError {
+    /// The error in words, without numbers: for boards that have no room for formatting.
+    pub const fn as_str(self) -> &'static str {
+        match self {
             Self::Truncated => "the bytes end before the fields do",
             Self::TooLong => "there are bytes after the last field",
             Self::Padding => "the padding is not zero",
             Self::Address => "the SDP addresses do not name a core and the host",
-            Self::Command(code) => return write!(f, "unknown command {code:#06x}"),
+            Self::Command(_) => "the command is not known",
             Self::Range => "a count or size is outside its range",
             Self::Text => "a text is not readable",
             Self::Magic => "the magic number is missing: nothing was loaded there",
-            Self::Version(version) => {
-                return write!(
-                    f,
-                    "version {version} of the format, where this side speaks {}",
-                    crate::VERSION
-                );
-            }
+            Self::Version(_) => "the other side speaks another version of the format",
             Self::Checksum => "a checksum does not match: the bytes were damaged or cut",
-        })
+        }
+    }
+}
+
+impl fmt::Display for DecodeError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Command(code) => write!(f, "{}: {code:#06x}", self.as_str()),
+            Self::Version(version) => write!(f, "{}: {version}, not {}", self.as_str(), crate::VERSION),
+            _ => f.write_str(self.as_str()),
+        }
     }
 }
 

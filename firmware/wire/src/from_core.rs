@@ -243,5 +243,5 @@ impl Farewell {
 
 /// As many whole characters as a packet has room for.
 fn cut(words: &str) -> &str {
-    &words[..words.floor_char_boundary(MAX_DATA)]
+    words.get(..words.floor_char_boundary(MAX_DATA)).unwrap_or(words)
 }

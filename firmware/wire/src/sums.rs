@@ -25,14 +25,21 @@ pub enum SumsError {
     TooLarge,
 }
 
-impl fmt::Display for SumsError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
+impl SumsError {
+    /// The error in words.
+    pub const fn as_str(self) -> &'static str {
+        match self {
             Self::Pixels => "a packet carries 1 to 16 pixels",
             Self::TooLarge => {
                 "a pixel's sum does not fit 40 bits: more samples or more light than the wire allows"
             }
-        })
+        }
+    }
+}
+
+impl fmt::Display for SumsError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.as_str())
     }
 }
 

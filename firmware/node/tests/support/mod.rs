@@ -163,24 +163,25 @@ pub(crate) fn run(
     host: impl FnMut(&mut World, Said),
 ) -> (Result<Outcome, Fault>, World) {
     let world = Rc::new(RefCell::new(world));
-    let network = FakeNetwork {
+    let mut network = FakeNetwork {
         world: world.clone(),
         host,
     };
-    let renderer = |unit: u32, sums: &mut Sums| {
+    let mut renderer = |unit: u32, sums: &mut Sums| {
         let mut world = world.borrow_mut();
         world.now = world.now.wrapping_add(RENDER_TICKS);
         sums[0] = [u64::from(unit), 0, wire::SUM_MAX];
         7
     };
-    let clock = FakeClock(world.clone());
+    let mut clock = FakeClock(world.clone());
+    let board = Name::new("fake");
     let worker = Worker::new(
         boot,
         node::plan(boot),
-        Name::new("fake"),
-        renderer,
-        network,
-        clock,
+        board,
+        &mut renderer,
+        &mut network,
+        &mut clock,
     );
     let outcome = worker.and_then(|worker| worker.run(|| STACK));
     (outcome, world.take())

@@ -1,0 +1,19 @@
+//! The 24 MHz counter of the system registers.
+
+use node::Clock;
+
+use crate::registers::Register;
+
+// SAFETY: SYS_24MHZ, a read-only 32-bit counter.
+const COUNTER: Register<u32> = unsafe { Register::new(0x1000_005C) };
+
+/// The counter. Under QEMU's `-icount shift=0` an instruction takes a nanosecond of its time, so that 24 ticks are 1000
+/// instructions.
+#[derive(Clone, Copy, Debug)]
+pub struct Counter;
+
+impl Clock for Counter {
+    fn ticks(&mut self) -> u32 {
+        COUNTER.read()
+    }
+}

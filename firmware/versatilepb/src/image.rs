@@ -1,0 +1,3 @@
+//! What this image was built for; chosen by `build.rs`.
+
+include!(concat!(env!("OUT_DIR"), "/image.rs"));
