@@ -187,7 +187,7 @@ mod tests {
     #[test]
     fn the_brightest_light_does_not_saturate() {
         let mut film = Film::new(1, 1);
-        let unit = 12u64 * 4096 << FRACTION_BITS;
+        let unit = (12u64 * 4096) << FRACTION_BITS;
         for _ in 0..1000 {
             film.add(0, 4096, &[[unit; 3]]).unwrap();
         }

@@ -3,6 +3,7 @@
 pub mod arithmetic;
 pub mod collector;
 pub mod compare;
+pub mod difference;
 pub mod file;
 pub mod film;
 pub mod fleet;
@@ -10,6 +11,7 @@ pub mod lockstep;
 pub mod openexr;
 pub mod picture;
 pub mod reference;
+pub mod report;
 pub mod scene;
 pub mod session;
 pub mod setup;

@@ -18,7 +18,7 @@ mod tiles;
 use statrs::distribution::{ChiSquared, ContinuousCDF, Normal};
 
 use crate::picture::{Estimate, displayed};
-pub use tiles::{FALSE_ALARM, TILE, TileFault, Tiles};
+pub use tiles::{FALSE_ALARM, SIDE, Tile, Tiles};
 
 /// The verdict on a picture.
 #[derive(Clone, Debug, PartialEq)]

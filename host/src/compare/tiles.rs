@@ -5,7 +5,7 @@ use statrs::distribution::{ContinuousCDF, Normal};
 use super::Pair;
 
 /// Side of a tile in pixels; at the right and bottom edges a tile is what is left.
-pub const TILE: u16 = 8;
+pub const SIDE: u16 = 8;
 
 /// How often the tile test may fail a picture that has no error: one picture in a hundred.
 pub const FALSE_ALARM: f64 = 0.01;
@@ -21,32 +21,65 @@ const DIMMEST: f64 = 0.01;
 /// picture of a hundred ([`FALSE_ALARM`]). The channels of a tile are not independent, which makes it rarer still.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tiles {
-    /// Tests made: three for every tile that has a pixel on both sides.
-    pub tested: usize,
+    /// Every tile that has a pixel on both sides, row-major.
+    pub tiles: Vec<Tile>,
     /// The z-score, up or down, that a test must stay within.
     pub threshold_z: f64,
-    /// The z-score of the largest magnitude, with its sign. Infinite where there is a difference without any noise.
-    pub max_z: f64,
-    /// Tests beyond the threshold.
-    pub failed: Vec<TileFault>,
-    /// The bias of the largest magnitude among the tiles, with its sign: over all channels, relative to the tile's own
-    /// reference (or 1 % of the picture's mean, if that is more). Noise and all: read it beside `max_tile_bias_noise`.
-    pub max_tile_bias: f64,
-    /// Upper bound of the standard error of `max_tile_bias`.
-    pub max_tile_bias_noise: f64,
 }
 
-/// A tile that noise does not explain.
+/// One tile's difference from the reference.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TileFault {
+pub struct Tile {
     /// Column of its left pixels.
     pub x: u16,
     /// Row of its top pixels.
     pub y: u16,
-    /// 0, 1, 2: red, green, blue.
-    pub channel: usize,
-    /// How many standard deviations it is off.
-    pub z: f64,
+    /// Bias over all channels, relative to the tile's own reference (or 1 % of the picture's mean, if that is more).
+    /// Noise and all: read it beside `bias_noise`.
+    pub bias: f64,
+    /// Upper bound of the standard error of `bias`.
+    pub bias_noise: f64,
+    /// z-scores of red, green, blue; infinite where there is a difference without any noise.
+    pub z: [f64; 3],
+}
+
+impl Tile {
+    /// The z-score of the largest magnitude, with its sign.
+    pub fn max_z(&self) -> f64 {
+        self.z.into_iter().fold(0.0, larger)
+    }
+}
+
+impl Tiles {
+    /// Number of tests: three for every tile.
+    pub fn tested(&self) -> usize {
+        3 * self.tiles.len()
+    }
+
+    /// The z-score of the largest magnitude, with its sign.
+    pub fn max_z(&self) -> f64 {
+        self.tiles.iter().map(Tile::max_z).fold(0.0, larger)
+    }
+
+    /// The tile whose bias has the largest magnitude.
+    pub fn most_biased(&self) -> Option<&Tile> {
+        self.tiles
+            .iter()
+            .max_by(|a, b| a.bias.abs().total_cmp(&b.bias.abs()))
+    }
+
+    /// Tests that noise does not explain: the tile and the channel.
+    pub fn failed(&self) -> impl Iterator<Item = (&Tile, usize)> {
+        let tests = self
+            .tiles
+            .iter()
+            .flat_map(|tile| [(tile, 0), (tile, 1), (tile, 2)]);
+        tests.filter(|(tile, channel)| tile.z[*channel].abs() > self.threshold_z)
+    }
+}
+
+fn larger(a: f64, b: f64) -> f64 {
+    if b.abs() > a.abs() { b } else { a }
 }
 
 /// Sums over the pixels of one tile.
@@ -61,46 +94,33 @@ struct Sums {
 /// Tests the tiles of a picture of `size`, whose reference has the mean `level`.
 pub(super) fn test(pixels: &[Option<Pair>], size: (u16, u16), level: f64) -> Tiles {
     let places: Vec<(u16, u16)> = (0..size.1)
-        .step_by(usize::from(TILE))
-        .flat_map(|y| (0..size.0).step_by(usize::from(TILE)).map(move |x| (x, y)))
+        .step_by(usize::from(SIDE))
+        .flat_map(|y| (0..size.0).step_by(usize::from(SIDE)).map(move |x| (x, y)))
         .collect();
-    let tiles: Vec<(u16, u16, Sums)> = places
+    let tiles: Vec<Tile> = places
         .into_iter()
         .map(|(x, y)| (x, y, sums(pixels, size, x, y)))
         .filter(|(_, _, sums)| sums.pixels > 0)
+        .map(|(x, y, sums)| {
+            let (bias, bias_noise) = bias(&sums, level);
+            let z = [0, 1, 2].map(|channel| z_score(sums.difference[channel], sums.variance[channel]));
+            Tile {
+                x,
+                y,
+                bias,
+                bias_noise,
+                z,
+            }
+        })
         .collect();
-    let tested = 3 * tiles.len();
-    let threshold_z = sidak_threshold(tested);
-    let mut verdict = Tiles {
-        tested,
-        threshold_z,
-        max_z: 0.0,
-        failed: Vec::new(),
-        max_tile_bias: 0.0,
-        max_tile_bias_noise: 0.0,
-    };
-    for (x, y, sums) in tiles {
-        let (bias, noise) = bias(&sums, level);
-        if bias.abs() > verdict.max_tile_bias.abs() {
-            (verdict.max_tile_bias, verdict.max_tile_bias_noise) = (bias, noise);
-        }
-        for channel in 0..3 {
-            let z = z_score(sums.difference[channel], sums.variance[channel]);
-            if z.abs() > verdict.max_z.abs() {
-                verdict.max_z = z;
-            }
-            if z.abs() > threshold_z {
-                verdict.failed.push(TileFault { x, y, channel, z });
-            }
-        }
-    }
-    verdict
+    let threshold_z = sidak_threshold(3 * tiles.len());
+    Tiles { tiles, threshold_z }
 }
 
 fn sums(pixels: &[Option<Pair>], (width, height): (u16, u16), x: u16, y: u16) -> Sums {
     let mut sums = Sums::default();
-    for row in y..y.saturating_add(TILE).min(height) {
-        for column in x..x.saturating_add(TILE).min(width) {
+    for row in y..y.saturating_add(SIDE).min(height) {
+        for column in x..x.saturating_add(SIDE).min(width) {
             let index = usize::from(row) * usize::from(width) + usize::from(column);
             let Some(pair) = &pixels[index] else { continue };
             sums.pixels += 1;
