@@ -1,0 +1,42 @@
+//! The arithmetic profiles as a choice at run time.
+
+use std::fmt;
+
+use tracer::profile::{Paper, Precise, Profile};
+
+/// A named set of arithmetic choices; the tracer is compiled once for each.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+pub enum Arithmetic {
+    /// The published system's choices.
+    Paper,
+    /// Ours.
+    #[default]
+    Precise,
+}
+
+impl Arithmetic {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::Paper, Self::Precise];
+
+    /// The name used by `--profile`, in reports and on the wire.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Paper => Paper::NAME,
+            Self::Precise => Precise::NAME,
+        }
+    }
+
+    /// The profile's own self-intersection epsilon, in 16:16.
+    pub const fn epsilon(self) -> i32 {
+        match self {
+            Self::Paper => Paper::EPSILON,
+            Self::Precise => Precise::EPSILON,
+        }
+    }
+}
+
+impl fmt::Display for Arithmetic {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}

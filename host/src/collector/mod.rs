@@ -1,0 +1,122 @@
+//! The collector: takes in what the cores send, hands out what is left to do, and ends when the picture is complete.
+//!
+//! ```text
+//!   socket ──> intake (is it ours?) ──> leases (is it new?) ──> film (add)
+//!                                          │
+//!   socket <── LEASE <─────────────────────┘        fleet: who has ended?
+//! ```
+//!
+//! Everything happens in the caller's thread: one packet is taken, judged and answered before the next. What decides
+//! is in parts that know neither socket nor clock: [`leases`], [`intake`], [`sequence`].
+
+pub mod intake;
+pub mod leases;
+pub mod pace;
+mod progress;
+mod run;
+pub mod sequence;
+mod socket;
+
+use std::net::SocketAddr;
+use std::time::Duration;
+
+use serde::Serialize;
+use wire::Farewell;
+
+use crate::film::Film;
+use sequence::Sequence;
+
+pub use progress::Progress;
+pub use run::{CollectError, collect};
+pub use socket::{BindError, bind};
+
+/// What became of all packets.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Packets {
+    /// Taken from the socket, whatever they were.
+    pub received: u64,
+    /// Units that were in already.
+    pub duplicate: u64,
+    /// Not ours, or not sound.
+    pub rejected: u64,
+    /// Sent by a core, as its packet numbers say, and never received.
+    pub lost: u64,
+}
+
+/// What the collector knows of one core.
+#[derive(Clone, Debug, Default)]
+pub struct CoreRecord {
+    /// The core's number.
+    pub core: u16,
+    /// Where its last packet came from. That may change within a run; a core is known by what its packets say.
+    pub source: Option<SocketAddr>,
+    /// When its last packet came, since the start.
+    pub heard: Option<Duration>,
+    /// Units of it that counted.
+    pub units: u64,
+    /// 24 MHz ticks it spent on them.
+    pub ticks: u64,
+    /// Rays it traced for them.
+    pub rays: u64,
+    /// Its packet numbers.
+    pub sequence: Sequence,
+    /// What it said when it was told to stop.
+    pub farewell: Option<Farewell>,
+    /// What it said when it failed.
+    pub last_words: Option<String>,
+    /// Whether it has ended, by its own or the fleet's word.
+    pub ended: bool,
+}
+
+/// How a collection ended.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum End {
+    /// Every unit is in.
+    Complete,
+    /// The caller asked to end early.
+    Interrupted,
+    /// No core is left that says anything; the text says why and names the cores.
+    Deserted(String),
+}
+
+/// What was collected; complete or not, as `end` says.
+#[derive(Debug)]
+pub struct Collection {
+    /// The picture as far as it came.
+    pub film: Film,
+    /// How it ended.
+    pub end: End,
+    /// The packets' accounts.
+    pub packets: Packets,
+    /// The cores, in order of their numbers.
+    pub cores: Vec<CoreRecord>,
+    /// From the start to the last unit.
+    pub elapsed: Duration,
+}
+
+impl Collection {
+    /// 24 MHz ticks that the cores spent on the units of the picture.
+    pub fn ticks(&self) -> u64 {
+        self.cores.iter().map(|core| core.ticks).sum()
+    }
+
+    /// Rays traced for the units of the picture.
+    pub fn rays(&self) -> u64 {
+        self.cores.iter().map(|core| core.rays).sum()
+    }
+
+    /// The most stack any core used and the size of that stack, where a core measured it.
+    pub fn stack(&self) -> Option<(u32, u32)> {
+        let measured = self
+            .cores
+            .iter()
+            .filter_map(|core| core.farewell)
+            .filter(|farewell| farewell.stack_size > 0);
+        measured
+            .map(|farewell| (farewell.stack_used, farewell.stack_size))
+            .max()
+    }
+}
+
+#[cfg(test)]
+mod tests;

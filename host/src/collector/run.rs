@@ -1,0 +1,398 @@
+//! The collection itself: one loop over the socket.
+
+use std::collections::HashSet;
+use std::io;
+use std::net::UdpSocket;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use wire::boot::PixelOrder;
+use wire::{FromCore, MAX_PAYLOAD, Order, Pixels, Report, ToCore};
+
+use super::intake::{Rejection, judge};
+use super::leases::{Arrival, Leases};
+use super::progress::{Progress, State};
+use super::{Collection, CoreRecord, End, Packets};
+use crate::film::{Film, FilmError};
+use crate::fleet::Fleet;
+use crate::session::Session;
+
+/// How long the socket is waited for at once, and so how often deaths and late leases are looked for.
+const TICK: Duration = Duration::from_millis(10);
+/// When no core has said a word for this long, none will.
+const SILENCE: Duration = Duration::from_secs(8);
+/// How long cores that were told to stop are waited for.
+const FAREWELL_TIME: Duration = Duration::from_secs(2);
+/// STOP is said again this often to a core that has not answered.
+const STOP_EVERY: Duration = Duration::from_millis(100);
+
+/// Why a collection could not go on.
+#[derive(Debug, thiserror::Error)]
+pub enum CollectError {
+    /// The socket failed.
+    #[error("the collector's socket failed: {0}")]
+    Socket(#[from] io::Error),
+    /// A unit could not be added.
+    #[error(transparent)]
+    Film(#[from] FilmError),
+    /// The picture is cut into more units than there are numbers for.
+    #[error("the picture has more than 2^32 units; choose a smaller --size or --spp")]
+    TooManyUnits,
+}
+
+/// Collects the session's picture from its cores.
+///
+/// Returns also when the fleet is gone or `interrupted` gets true, with what came until then. Whatever the end, the cores
+/// that are left have been told to stop.
+pub fn collect(
+    session: &Session,
+    socket: &UdpSocket,
+    fleet: &mut Fleet,
+    interrupted: &AtomicBool,
+    progress: &mut Progress,
+) -> Result<Collection, CollectError> {
+    socket.set_read_timeout(Some(TICK))?;
+    let mut run = Run::new(session, socket, fleet, progress)?;
+    let end = run.work(interrupted)?;
+    let elapsed = run.now();
+    run.close()?;
+    run.progress.finish();
+    let mut packets = run.packets;
+    packets.lost = run.cores.iter().map(|core| core.sequence.lost()).sum();
+    Ok(Collection {
+        film: run.film,
+        end,
+        packets,
+        cores: run.cores,
+        elapsed,
+    })
+}
+
+/// What is still to be done.
+enum Work {
+    /// The host says who does what.
+    Leased(Leases),
+    /// The cores choose; these units are in.
+    Free(HashSet<u32>),
+}
+
+struct Run<'a> {
+    session: &'a Session,
+    socket: &'a UdpSocket,
+    fleet: &'a mut Fleet,
+    progress: &'a mut Progress,
+    start: Instant,
+    film: Film,
+    work: Work,
+    samples: u64,
+    packets: Packets,
+    cores: Vec<CoreRecord>,
+    last_rejection: Option<Rejection>,
+}
+
+impl<'a> Run<'a> {
+    fn new(
+        session: &'a Session,
+        socket: &'a UdpSocket,
+        fleet: &'a mut Fleet,
+        progress: &'a mut Progress,
+    ) -> Result<Self, CollectError> {
+        let units = session.plan.units().ok_or(CollectError::TooManyUnits)?;
+        Ok(Self {
+            session,
+            socket,
+            fleet,
+            progress,
+            start: Instant::now(),
+            film: Film::new(session.plan.width, session.plan.height),
+            work: match session.order {
+                PixelOrder::Leased => Work::Leased(Leases::new(units)),
+                PixelOrder::Sequential | PixelOrder::Stochastic => Work::Free(HashSet::new()),
+            },
+            samples: 0,
+            packets: Packets::default(),
+            cores: (0..session.cores)
+                .map(|core| CoreRecord {
+                    core,
+                    ..CoreRecord::default()
+                })
+                .collect(),
+            last_rejection: None,
+        })
+    }
+
+    fn now(&self) -> Duration {
+        self.start.elapsed()
+    }
+
+    /// Until the picture is complete or cannot become so.
+    fn work(&mut self, interrupted: &AtomicBool) -> Result<End, CollectError> {
+        let mut next_look = Duration::ZERO;
+        let mut buffer = [0; MAX_PAYLOAD + 1];
+        while self.samples < self.session.samples() {
+            if interrupted.load(Ordering::Relaxed) {
+                return Ok(End::Interrupted);
+            }
+            let received = self.receive(&mut buffer)?;
+            if let Some(payload) = received {
+                self.take(&buffer[..payload.0], payload.1)?;
+            }
+            if self.now() < next_look {
+                continue;
+            }
+            next_look = self.now() + TICK;
+            self.look_after_cores();
+            self.show();
+            // The packets of cores that have ended may still be in the socket: only an empty one is the end.
+            if received.is_none()
+                && let Some(why) = self.desertion()
+            {
+                return Ok(End::Deserted(why));
+            }
+        }
+        Ok(End::Complete)
+    }
+
+    /// One payload's length and source, or nothing within a tick.
+    fn receive(&self, buffer: &mut [u8]) -> io::Result<Option<(usize, std::net::SocketAddr)>> {
+        match self.socket.recv_from(buffer) {
+            Ok(received) => Ok(Some(received)),
+            Err(error) => match error.kind() {
+                io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut | io::ErrorKind::Interrupted => Ok(None),
+                _ => Err(error),
+            },
+        }
+    }
+
+    /// Judges a packet, and answers it where it asks for work or makes room for some.
+    fn take(&mut self, payload: &[u8], source: std::net::SocketAddr) -> Result<(), CollectError> {
+        let Some(packet) = self.judge(payload, source) else {
+            return Ok(());
+        };
+        let (core, now) = (packet.core, self.now());
+        match packet.report {
+            Report::Hello(_) => {
+                if let Work::Leased(leases) = &mut self.work {
+                    leases.idle(core, now);
+                }
+            }
+            Report::Pixels(pixels) => self.take_pixels(core, &pixels)?,
+            Report::Farewell(_) => {}
+            Report::Fault(_) => self.bury(core, "it failed"),
+        }
+        self.hand_out(core);
+        Ok(())
+    }
+
+    /// The accounts of a packet, and the packet if it is ours.
+    fn judge<'p>(&mut self, payload: &'p [u8], source: std::net::SocketAddr) -> Option<FromCore<'p>> {
+        self.packets.received += 1;
+        let packet = match judge(self.session, payload) {
+            Ok(packet) => packet,
+            Err(rejection) => {
+                self.packets.rejected += 1;
+                self.last_rejection = Some(rejection);
+                return None;
+            }
+        };
+        let now = self.now();
+        let record = &mut self.cores[usize::from(packet.core)];
+        (record.source, record.heard) = (Some(source), Some(now));
+        match packet.report {
+            Report::Pixels(_) => record.sequence.received(packet.seq),
+            Report::Hello(_) => record.sequence.sent_before(packet.seq),
+            Report::Farewell(farewell) => {
+                record.sequence.sent_before(packet.seq);
+                record.farewell = Some(farewell);
+            }
+            Report::Fault(words) => record.last_words = Some(words.to_owned()),
+        }
+        Some(packet)
+    }
+
+    fn take_pixels(&mut self, core: u16, pixels: &Pixels) -> Result<(), CollectError> {
+        let now = self.now();
+        let arrival = match &mut self.work {
+            Work::Leased(leases) => leases.arrived(core, pixels.unit, now),
+            Work::Free(done) => match done.insert(pixels.unit) {
+                true => Arrival::First,
+                false => Arrival::Duplicate,
+            },
+        };
+        if arrival == Arrival::Duplicate {
+            self.packets.duplicate += 1;
+            return Ok(());
+        }
+        let run: Vec<[u64; 3]> = pixels.sums.iter().collect();
+        let first = self.session.plan.extent(pixels.unit).first_pixel;
+        self.film.add(first, u32::from(pixels.samples), &run)?;
+        self.samples += run.len() as u64 * u64::from(pixels.samples);
+        let record = &mut self.cores[usize::from(core)];
+        record.units += 1;
+        record.ticks += u64::from(pixels.ticks);
+        record.rays += u64::from(pixels.rays);
+        Ok(())
+    }
+
+    /// Notices deaths and silence, and gives what came back of that to others.
+    fn look_after_cores(&mut self) {
+        for core in self.fleet.newly_ended() {
+            if self
+                .cores
+                .get(usize::from(core))
+                .is_some_and(|record| !record.ended)
+            {
+                let how = self.fleet.how_ended(core);
+                self.bury(core, &how);
+            }
+        }
+        let now = self.now();
+        let Work::Leased(leases) = &mut self.work else {
+            return;
+        };
+        for core in leases.late(now) {
+            self.progress
+                .say(&format!("core {core} is silent; its work goes to the others"));
+        }
+        for core in leases.holders() {
+            self.hand_out(core);
+        }
+    }
+
+    /// Sends the core as many leases as it may have.
+    fn hand_out(&mut self, core: u16) {
+        let now = self.now();
+        while let Work::Leased(leases) = &mut self.work
+            && let Some(lease) = leases.grant(core, now)
+        {
+            self.send(
+                core,
+                Order::Lease {
+                    number: lease.number,
+                    first: lease.first,
+                    count: lease.count,
+                },
+            );
+        }
+    }
+
+    fn bury(&mut self, core: u16, how: &str) {
+        self.cores[usize::from(core)].ended = true;
+        self.progress
+            .say(&format!("core {core}: {how}; its work goes to the others"));
+        if let Work::Leased(leases) = &mut self.work {
+            leases.ended(core);
+        }
+    }
+
+    /// Sends to where the core was last heard. A packet that cannot be sent is a lost one, and made good like any other.
+    fn send(&self, core: u16, order: Order) {
+        let mut payload = [0; MAX_PAYLOAD];
+        let len = ToCore {
+            core,
+            session: self.session.id,
+            order,
+        }
+        .encode(&mut payload);
+        if let Some(source) = self.cores[usize::from(core)].source {
+            let _lost = self.socket.send_to(&payload[..len], source);
+        }
+    }
+
+    /// Why nothing more will come, if so.
+    fn desertion(&self) -> Option<String> {
+        let heard = self.cores.iter().filter_map(|core| core.heard).max();
+        let since = self.now().saturating_sub(heard.unwrap_or_default());
+        let all_ended = self.cores.iter().all(|core| core.ended);
+        // Cores that somebody starts by hand may take any time before they are first heard.
+        let silent = since >= SILENCE && (heard.is_some() || !self.fleet.is_elsewhere());
+        if !all_ended && !silent {
+            return None;
+        }
+        let (units, state) = (self.session.plan.units().unwrap_or(u32::MAX), self.state());
+        let what = if all_ended {
+            "all cores have ended"
+        } else {
+            "no core says anything any more"
+        };
+        let mut text = format!("{what}, with {} of {units} units in", state.units);
+        for record in &self.cores {
+            text.push_str(&self.obituary(record));
+        }
+        if let Some(rejection) = self.last_rejection {
+            text.push_str(&format!(
+                "\n  {} packets were rejected; of the last: {rejection}",
+                self.packets.rejected
+            ));
+        }
+        Some(text)
+    }
+
+    /// What is known about the end of a core.
+    fn obituary(&self, record: &CoreRecord) -> String {
+        let heard = match record.heard {
+            Some(heard) => format!(
+                "last heard {:.1} s ago",
+                self.now().saturating_sub(heard).as_secs_f64()
+            ),
+            None => "never heard".to_owned(),
+        };
+        let mut text = format!(
+            "\n  core {}: {}, {heard}",
+            record.core,
+            self.fleet.how_ended(record.core)
+        );
+        if let Some(words) = &record.last_words {
+            text.push_str(&format!("\n    its last words: {words}"));
+        }
+        for line in self.fleet.last_output(record.core) {
+            text.push_str(&format!("\n    {line}"));
+        }
+        text
+    }
+
+    fn state(&self) -> State {
+        State {
+            elapsed: self.now(),
+            units: self.cores.iter().map(|core| core.units).sum(),
+            samples: self.samples,
+            wanted: self.session.samples(),
+            packets: self.packets.received,
+        }
+    }
+
+    fn show(&mut self) {
+        let state = self.state();
+        self.progress.show(&state);
+    }
+
+    /// Tells the cores to stop and waits a little for their last reports. What else comes is counted but not added.
+    fn close(&mut self) -> Result<(), CollectError> {
+        let (end, mut next_stop) = (self.now() + FAREWELL_TIME, Duration::ZERO);
+        let mut buffer = [0; MAX_PAYLOAD + 1];
+        loop {
+            let waiting: Vec<u16> = self
+                .cores
+                .iter()
+                .filter(|core| core.source.is_some() && core.farewell.is_none() && !core.ended)
+                .map(|core| core.core)
+                .collect();
+            if waiting.is_empty() || self.now() >= end {
+                return Ok(());
+            }
+            if self.now() >= next_stop {
+                waiting.iter().for_each(|&core| self.send(core, Order::Stop));
+                next_stop = self.now() + STOP_EVERY;
+            }
+            if let Some((len, source)) = self.receive(&mut buffer)? {
+                self.judge(&buffer[..len], source);
+            } else {
+                for core in self.fleet.newly_ended() {
+                    if let Some(record) = self.cores.get_mut(usize::from(core)) {
+                        record.ended = true;
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,368 @@
+//! The collector against cores in threads of this process, over the loopback: the real worker, on a network that is made to fail,
+//! with a renderer that is quick and easy to check.
+
+use std::net::{Ipv4Addr, UdpSocket};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::{self, JoinHandle};
+use std::time::{Duration, Instant};
+
+use node::{Clock, Fault, Network, Outcome, SendError, StackUse, TICKS_PER_SECOND, Worker};
+use rand_xoshiro::Xoshiro256StarStar;
+use rand_xoshiro::rand_core::{Rng, SeedableRng};
+use tracer::unit::Sums;
+use wire::boot::PixelOrder;
+use wire::{Boot, Name};
+
+use super::*;
+use crate::fleet::{Fleet, NativeFleet};
+use crate::session::tests::small;
+use crate::session::{Route, Session};
+
+/// What goes wrong on a core's network.
+#[derive(Clone, Copy, Default)]
+struct Faults {
+    loss_percent: u64,
+    duplicate_percent: u64,
+    /// Every packet is followed by one of another run.
+    foreign: bool,
+    /// Nothing leaves the core after this many packets.
+    dies_after: Option<u32>,
+}
+
+struct FaultyNetwork {
+    socket: UdpSocket,
+    chance: Xoshiro256StarStar,
+    faults: Faults,
+    sent: u32,
+    given_up: Arc<AtomicBool>,
+}
+
+impl FaultyNetwork {
+    fn percent(&mut self, percent: u64) -> bool {
+        self.chance.next_u64() % 100 < percent
+    }
+
+    fn is_dead(&self) -> bool {
+        self.faults.dies_after.is_some_and(|packets| self.sent > packets)
+    }
+}
+
+impl Network for FaultyNetwork {
+    fn send(&mut self, payload: &[u8]) -> Result<(), SendError> {
+        self.sent += 1;
+        if self.is_dead() || self.given_up.load(Ordering::Relaxed) {
+            return Err(SendError);
+        }
+        let copies = 1 + u64::from(self.percent(self.faults.duplicate_percent));
+        for _ in 0..copies {
+            if !self.percent(self.faults.loss_percent) {
+                self.socket.send(payload).map_err(|_| SendError)?;
+            }
+        }
+        if self.faults.foreign {
+            let mut other = payload.to_vec();
+            other[14] ^= 1; // The session's lowest byte.
+            self.socket.send(&other).map_err(|_| SendError)?;
+        }
+        Ok(())
+    }
+
+    fn receive(&mut self, buffer: &mut [u8]) -> Option<usize> {
+        let len = self.socket.recv(buffer).ok()?;
+        (!self.percent(self.faults.loss_percent)).then_some(len)
+    }
+
+    fn wait(&mut self, _ticks: u32) {
+        thread::sleep(Duration::from_millis(1));
+    }
+}
+
+struct HostClock(Instant);
+
+impl Clock for HostClock {
+    fn ticks(&mut self) -> u32 {
+        (self.0.elapsed().as_micros() as u64 * u64::from(TICKS_PER_SECOND / 1_000_000)) as u32
+    }
+}
+
+/// What the quick renderer makes of a unit.
+fn rendered(unit: u32) -> Sums {
+    std::array::from_fn(|pixel| [u64::from(unit) + 1, pixel as u64, u64::from(unit % 1000) << 20])
+}
+
+/// Cores in threads of their own, outside of any [`Fleet`].
+struct Cores {
+    threads: Vec<JoinHandle<Result<Outcome, Fault>>>,
+    given_up: Arc<AtomicBool>,
+}
+
+impl Cores {
+    fn start(session: &Session, port: u16, faults: &[Faults]) -> Self {
+        let given_up = Arc::new(AtomicBool::new(false));
+        let spawn = |(core, &faults): (usize, &Faults)| {
+            let (session, given_up) = (session.clone(), Arc::clone(&given_up));
+            thread::spawn(move || work(&session, core as u16, port, faults, given_up))
+        };
+        Self {
+            threads: faults.iter().enumerate().map(spawn).collect(),
+            given_up,
+        }
+    }
+
+    fn join(self) -> Vec<Result<Outcome, Fault>> {
+        self.given_up.store(true, Ordering::Relaxed);
+        self.threads
+            .into_iter()
+            .map(|thread| thread.join().expect("no panic"))
+            .collect()
+    }
+}
+
+fn work(
+    session: &Session,
+    core: u16,
+    port: u16,
+    faults: Faults,
+    given_up: Arc<AtomicBool>,
+) -> Result<Outcome, Fault> {
+    let boot: Boot<'_> = session.boot(core, &Route::loopback(port));
+    let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).expect("a socket");
+    socket
+        .connect((Ipv4Addr::LOCALHOST, port))
+        .expect("the collector's address");
+    socket.set_nonblocking(true).expect("a socket that does not wait");
+    let chance = Xoshiro256StarStar::seed_from_u64(u64::from(core));
+    let mut network = FaultyNetwork {
+        socket,
+        chance,
+        faults,
+        sent: 0,
+        given_up,
+    };
+    let mut renderer = |unit: u32, sums: &mut Sums| {
+        thread::sleep(Duration::from_millis(2));
+        *sums = rendered(unit);
+        7
+    };
+    let mut clock = HostClock(Instant::now());
+    let worker = Worker::new(
+        &boot,
+        session.plan,
+        Name::new("test"),
+        &mut renderer,
+        &mut network,
+        &mut clock,
+    )?;
+    worker.run(|| StackUse {
+        used: 100,
+        size: 1000,
+    })
+}
+
+/// Runs a collection with one core a fault; returns it, the cores' outcomes and how long it took.
+fn collected(
+    session: &Session,
+    faults: &[Faults],
+    interrupted: &AtomicBool,
+) -> (Collection, Vec<Result<Outcome, Fault>>, Duration) {
+    let socket = bind(Ipv4Addr::LOCALHOST, 0).expect("a free port");
+    let port = socket.local_addr().expect("it is bound").port();
+    let cores = Cores::start(session, port, faults);
+    let start = Instant::now();
+    let collection = collect(
+        session,
+        &socket,
+        &mut Fleet::Elsewhere,
+        interrupted,
+        &mut Progress::Silent,
+    );
+    let took = start.elapsed();
+    (collection.expect("the socket works"), cores.join(), took)
+}
+
+/// The film with every unit once.
+fn whole_film(session: &Session) -> Film {
+    let mut film = Film::new(session.plan.width, session.plan.height);
+    for unit in 0..session.plan.units().expect("few units") {
+        let extent = session.plan.extent(unit);
+        let sums = &rendered(unit)[..usize::from(extent.pixels)];
+        film.add(extent.first_pixel, u32::from(extent.samples), sums)
+            .expect("it fits");
+    }
+    film
+}
+
+static RUNNING: AtomicBool = AtomicBool::new(false);
+
+#[test]
+fn every_unit_is_added_once_and_the_cores_say_farewell() {
+    let session = small(3, PixelOrder::Leased);
+    let (collection, outcomes, _) = collected(&session, &[Faults::default(); 3], &RUNNING);
+    assert_eq!(collection.end, End::Complete);
+    assert_eq!(collection.film, whole_film(&session));
+    assert_eq!((collection.packets.rejected, collection.packets.lost), (0, 0));
+    assert_eq!(collection.rays(), 7 * 40);
+    assert!(collection.ticks() >= 40 * 2 * 24_000, "each unit sleeps for 2 ms");
+    assert_eq!(collection.stack(), Some((100, 1000)));
+    let units: u64 = collection.cores.iter().map(|core| core.units).sum();
+    assert_eq!(units, 40);
+    assert!(
+        collection
+            .cores
+            .iter()
+            .all(|core| core.units > 0 && core.farewell.is_some())
+    );
+    assert!(outcomes.iter().all(Result::is_ok), "{outcomes:?}");
+}
+
+#[test]
+fn a_bad_network_gives_the_same_film_and_shows_in_the_accounts() {
+    let session = small(3, PixelOrder::Leased);
+    let bad = Faults {
+        loss_percent: 20,
+        duplicate_percent: 20,
+        foreign: true,
+        dies_after: None,
+    };
+    let (collection, ..) = collected(&session, &[bad; 3], &RUNNING);
+    assert_eq!(collection.end, End::Complete);
+    assert_eq!(collection.film, whole_film(&session));
+    let packets = collection.packets;
+    assert!(
+        packets.lost > 0 && packets.duplicate > 0 && packets.rejected > 20,
+        "{packets:?}"
+    );
+}
+
+#[test]
+fn the_units_of_a_core_that_dies_go_to_the_other() {
+    let session = small(2, PixelOrder::Leased);
+    let dying = Faults {
+        dies_after: Some(5),
+        ..Faults::default()
+    };
+    let (collection, outcomes, took) = collected(&session, &[Faults::default(), dying], &RUNNING);
+    assert_eq!(collection.end, End::Complete);
+    assert_eq!(collection.film, whole_film(&session));
+    assert_eq!(outcomes[1], Err(Fault::Network));
+    assert!(took < Duration::from_secs(7), "{took:?}");
+}
+
+#[test]
+fn when_all_cores_are_silent_it_ends_within_ten_seconds_and_names_them() {
+    let session = small(2, PixelOrder::Leased);
+    let dying = Faults {
+        dies_after: Some(6),
+        ..Faults::default()
+    };
+    let (collection, _, took) = collected(&session, &[dying; 2], &RUNNING);
+    assert!(
+        took < Duration::from_secs(11),
+        "8 s of silence and 2 s for a last word, not {took:?}"
+    );
+    let End::Deserted(why) = collection.end else {
+        panic!("it cannot be complete: {:?}", collection.end)
+    };
+    assert!(
+        why.contains("core 0") && why.contains("core 1") && why.contains("last heard"),
+        "{why}"
+    );
+    assert!(collection.film.samples() > 0 && collection.film != whole_film(&session));
+}
+
+#[test]
+fn cores_that_failed_to_start_end_it_at_once_with_their_reason() {
+    let session = small(2, PixelOrder::Leased);
+    let socket = bind(Ipv4Addr::LOCALHOST, 0).expect("a free port");
+    let damaged = vec![vec![0; 100]; 2];
+    let fleet = NativeFleet::start(&damaged, crate::arithmetic::Arithmetic::Precise).expect("threads");
+    let start = Instant::now();
+    let end = collect(
+        &session,
+        &socket,
+        &mut Fleet::Native(fleet),
+        &RUNNING,
+        &mut Progress::Silent,
+    );
+    assert!(start.elapsed() < Duration::from_secs(2));
+    let End::Deserted(why) = end.expect("the socket works").end else {
+        panic!("no core ever worked")
+    };
+    assert!(
+        why.contains("all cores have ended, with 0 of 40 units in"),
+        "{why}"
+    );
+    assert!(why.contains("core 1: it failed: its boot block"), "{why}");
+}
+
+#[test]
+fn packets_of_another_run_are_named_when_nothing_else_comes() {
+    let session = small(1, PixelOrder::Leased);
+    let other = Session {
+        id: 77,
+        ..session.clone()
+    };
+    let socket = bind(Ipv4Addr::LOCALHOST, 0).expect("a free port");
+    let port = socket.local_addr().expect("it is bound").port();
+    let foreign = Cores::start(&other, port, &[Faults::default()]);
+    // Its own core exists but never says a word that counts, so that the silence is its own.
+    let damaged = NativeFleet::start(&[vec![]], crate::arithmetic::Arithmetic::Precise).expect("a thread");
+    thread::sleep(Duration::from_millis(100));
+    let end = collect(
+        &session,
+        &socket,
+        &mut Fleet::Native(damaged),
+        &RUNNING,
+        &mut Progress::Silent,
+    );
+    foreign.join();
+    let End::Deserted(why) = end.expect("the socket works").end else {
+        panic!("no core ever worked")
+    };
+    assert!(why.contains("of another run (0x0000004d)"), "{why}");
+}
+
+#[test]
+fn an_interrupted_collection_keeps_what_came_and_stops_the_cores() {
+    let session = small(1, PixelOrder::Leased);
+    let session = Session {
+        plan: tracer::unit::Plan {
+            spp: 4_000,
+            ..session.plan
+        },
+        ..session
+    };
+    let interrupted = Arc::new(AtomicBool::new(false));
+    let later = Arc::clone(&interrupted);
+    let timer = thread::spawn(move || {
+        thread::sleep(Duration::from_millis(200));
+        later.store(true, Ordering::Relaxed);
+    });
+    let (collection, outcomes, took) = collected(&session, &[Faults::default()], &interrupted);
+    timer.join().expect("no panic");
+    assert_eq!(collection.end, End::Interrupted);
+    assert!(collection.film.samples() > 0);
+    assert!(
+        outcomes[0].is_ok() && took < Duration::from_secs(2),
+        "{outcomes:?} {took:?}"
+    );
+}
+
+#[test]
+fn the_sequential_order_ends_when_every_unit_is_in() {
+    let session = small(3, PixelOrder::Sequential);
+    let (collection, outcomes, _) = collected(&session, &[Faults::default(); 3], &RUNNING);
+    assert_eq!(collection.end, End::Complete);
+    assert_eq!(collection.film, whole_film(&session));
+    assert!(outcomes.iter().all(Result::is_ok), "{outcomes:?}");
+}
+
+#[test]
+fn the_stochastic_order_ends_when_there_are_as_many_samples_as_were_asked_for() {
+    let session = small(2, PixelOrder::Stochastic);
+    let (collection, outcomes, _) = collected(&session, &[Faults::default(); 2], &RUNNING);
+    assert_eq!(collection.end, End::Complete);
+    assert_eq!(collection.film.samples(), session.samples());
+    assert!(outcomes.iter().all(Result::is_ok), "{outcomes:?}");
+}

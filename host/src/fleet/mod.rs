@@ -1,0 +1,78 @@
+//! The cores of a run: started together, watched, and ended when the run ends, however it ends.
+
+mod native;
+mod qemu;
+
+pub use native::NativeFleet;
+pub use qemu::{QemuFleet, command_line};
+
+/// Lines of a core's output that are kept for a report of its end.
+const LAST_LINES: usize = 5;
+
+/// Why a fleet could not be started.
+#[derive(Debug, thiserror::Error)]
+pub enum FleetError {
+    /// A core's files could not be written.
+    #[error("cannot write {path}: {cause}; give another --out or make room")]
+    File {
+        /// The file.
+        path: std::path::PathBuf,
+        /// What the system said.
+        cause: std::io::Error,
+    },
+    /// The emulator could not be started.
+    #[error("core {core}: cannot start {program}: {cause}")]
+    Start {
+        /// The core.
+        core: usize,
+        /// The program.
+        program: String,
+        /// What the system said.
+        cause: std::io::Error,
+    },
+}
+
+/// The cores of a run. Dropping it ends them.
+#[derive(Debug)]
+pub enum Fleet {
+    /// One QEMU process a core.
+    Qemu(QemuFleet),
+    /// One thread of this host a core.
+    Native(NativeFleet),
+    /// Somebody else starts and ends them.
+    Elsewhere,
+}
+
+impl Fleet {
+    /// Cores that ended since the last call.
+    pub fn newly_ended(&mut self) -> Vec<u16> {
+        match self {
+            Self::Qemu(fleet) => fleet.newly_ended(),
+            Self::Native(fleet) => fleet.newly_ended(),
+            Self::Elsewhere => Vec::new(),
+        }
+    }
+
+    /// What is known about the end of a core, in words.
+    pub fn how_ended(&self, core: u16) -> String {
+        let known = match self {
+            Self::Qemu(fleet) => fleet.how_ended(core),
+            Self::Native(fleet) => fleet.how_ended(core),
+            Self::Elsewhere => return "started elsewhere".to_owned(),
+        };
+        known.unwrap_or_else(|| "still running".to_owned())
+    }
+
+    /// The last lines that a core wrote on its console.
+    pub fn last_output(&self, core: u16) -> Vec<String> {
+        match self {
+            Self::Qemu(fleet) => fleet.last_output(core),
+            Self::Native(_) | Self::Elsewhere => Vec::new(),
+        }
+    }
+
+    /// Whether somebody else starts the cores, at any time.
+    pub fn is_elsewhere(&self) -> bool {
+        matches!(self, Self::Elsewhere)
+    }
+}

@@ -1,0 +1,279 @@
+//! Cores as QEMU processes.
+
+use std::ffi::OsString;
+use std::fs::{self, File};
+use std::io::{Read, Seek, SeekFrom};
+use std::os::unix::process::{CommandExt, ExitStatusExt};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, ExitStatus, Stdio};
+
+use super::{FleetError, LAST_LINES};
+use crate::setup;
+
+/// Where a board looks for its boot block.
+const BOOT_ADDRESS: u32 = 0x0040_0000;
+/// How much of the end of a log is read for its last lines.
+const TAIL: u64 = 4096;
+
+/// The arguments that make QEMU the board `versatilepb`, running `elf` with the boot block in file `boot`.
+pub fn command_line(elf: &Path, boot: Option<&Path>) -> Vec<OsString> {
+    // One instruction is one virtual nanosecond (`-icount shift=0`): the core's clock counts instructions.
+    let mut arguments: Vec<OsString> = [
+        "-M",
+        "versatilepb",
+        "-cpu",
+        "arm946",
+        "-m",
+        "64",
+        "-nographic",
+        "-audiodev",
+        "none,id=a",
+        "-semihosting",
+        "-icount",
+        "shift=0",
+        "-nic",
+        "user,model=smc91c111",
+        "-kernel",
+    ]
+    .map(OsString::from)
+    .to_vec();
+    arguments.push(elf.into());
+    if let Some(boot) = boot {
+        // QEMU ends an option's value at a comma unless it is doubled.
+        let file = boot.display().to_string().replace(',', ",,");
+        arguments.push("-device".into());
+        arguments.push(format!("loader,addr={BOOT_ADDRESS:#x},file={file},force-raw=on").into());
+    }
+    arguments
+}
+
+/// One emulated core.
+#[derive(Debug)]
+struct Guest {
+    child: Child,
+    log: PathBuf,
+    ended: Option<ExitStatus>,
+}
+
+/// Cores as QEMU processes. Dropping it kills them, by their ids.
+#[derive(Debug)]
+pub struct QemuFleet {
+    guests: Vec<Guest>,
+}
+
+impl QemuFleet {
+    /// Starts one process a boot block. `folder` gets, for each core N, `core-N.boot`, its console's `core-N.log`, and its
+    /// process's id in `core-N.pid`.
+    pub fn start(
+        qemu: &Path,
+        elf: &Path,
+        boot_blocks: &[Vec<u8>],
+        folder: &Path,
+    ) -> Result<Self, FleetError> {
+        let mut fleet = Self {
+            guests: Vec::with_capacity(boot_blocks.len()),
+        };
+        let failed = |path: &Path| {
+            let path = path.to_owned();
+            move |cause| FleetError::File { path, cause }
+        };
+        fs::create_dir_all(folder).map_err(failed(folder))?;
+        for (core, block) in boot_blocks.iter().enumerate() {
+            let file = |extension| folder.join(format!("core-{core}.{extension}"));
+            let (boot, log, pid) = (file("boot"), file("log"), file("pid"));
+            fs::write(&boot, block).map_err(failed(&boot))?;
+            let output = File::create(&log).map_err(failed(&log))?;
+            let errors = output.try_clone().map_err(failed(&log))?;
+            let mut command = bound_to_this_process(qemu);
+            command.args(command_line(elf, Some(&boot)));
+            command.stdin(Stdio::null()).stdout(output).stderr(errors);
+            // Ctrl-C is for this process, which then ends its cores in order.
+            command.process_group(0);
+            let program = qemu.display().to_string();
+            let child = command
+                .spawn()
+                .map_err(|cause| FleetError::Start { core, program, cause })?;
+            let id = child.id();
+            fleet.guests.push(Guest {
+                child,
+                log,
+                ended: None,
+            });
+            fs::write(&pid, format!("{id}\n")).map_err(failed(&pid))?;
+        }
+        Ok(fleet)
+    }
+
+    /// The ids of the processes, core by core.
+    pub fn process_ids(&self) -> Vec<u32> {
+        self.guests.iter().map(|guest| guest.child.id()).collect()
+    }
+
+    pub(super) fn newly_ended(&mut self) -> Vec<u16> {
+        let mut ended = Vec::new();
+        for (core, guest) in self.guests.iter_mut().enumerate() {
+            // An error means that the process cannot be asked; silence will tell.
+            if guest.ended.is_none()
+                && let Ok(Some(status)) = guest.child.try_wait()
+            {
+                guest.ended = Some(status);
+                ended.extend(u16::try_from(core));
+            }
+        }
+        ended
+    }
+
+    pub(super) fn how_ended(&self, core: u16) -> Option<String> {
+        let status = self.guests.get(usize::from(core))?.ended?;
+        Some(match (status.code(), status.signal()) {
+            (Some(code), _) => format!("its QEMU ended with code {code}"),
+            (None, Some(signal)) => format!("its QEMU was killed by signal {signal}"),
+            (None, None) => format!("its QEMU ended ({status})"),
+        })
+    }
+
+    pub(super) fn last_output(&self, core: u16) -> Vec<String> {
+        let Some(guest) = self.guests.get(usize::from(core)) else {
+            return Vec::new();
+        };
+        match tail(&guest.log) {
+            Ok(lines) => lines,
+            Err(error) => vec![format!(
+                "(its output in {} cannot be read: {error})",
+                guest.log.display()
+            )],
+        }
+    }
+}
+
+impl Drop for QemuFleet {
+    fn drop(&mut self) {
+        for guest in &mut self.guests {
+            // The only error is that it has ended already.
+            let _gone = guest.child.kill();
+        }
+        for guest in &mut self.guests {
+            let _status = guest.child.wait();
+        }
+    }
+}
+
+/// A command that the kernel kills when this process dies, even of SIGKILL, where util-linux's `setpriv` can arrange it.
+fn bound_to_this_process(program: &Path) -> Command {
+    match setup::program("setpriv") {
+        Some(setpriv) => {
+            let mut command = Command::new(setpriv);
+            command.args(["--pdeathsig", "KILL", "--"]).arg(program);
+            command
+        }
+        None => Command::new(program),
+    }
+}
+
+/// The last few lines of a file.
+fn tail(path: &Path) -> std::io::Result<Vec<String>> {
+    let mut file = File::open(path)?;
+    let len = file.metadata()?.len();
+    file.seek(SeekFrom::Start(len.saturating_sub(TAIL)))?;
+    let mut bytes = Vec::new();
+    file.take(TAIL).read_to_end(&mut bytes)?;
+    let text = String::from_utf8_lossy(&bytes);
+    let lines: Vec<&str> = text
+        .lines()
+        .map(str::trim_end)
+        .filter(|line| !line.is_empty())
+        .collect();
+    let first = lines.len().saturating_sub(LAST_LINES);
+    Ok(lines[first..].iter().map(|&line| line.to_owned()).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::os::unix::fs::PermissionsExt;
+    use std::time::{Duration, Instant};
+
+    /// A program that takes QEMU's place.
+    fn fake_qemu(folder: &Path, script: &str) -> PathBuf {
+        let path = folder.join("fake-qemu");
+        fs::write(&path, format!("#!/bin/sh\n{script}\n")).expect("a script");
+        fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).expect("an executable script");
+        path
+    }
+
+    fn all_ended(fleet: &mut QemuFleet, cores: usize) -> Vec<u16> {
+        let (start, mut ended) = (Instant::now(), Vec::new());
+        while ended.len() < cores && start.elapsed() < Duration::from_secs(10) {
+            ended.extend(fleet.newly_ended());
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        ended
+    }
+
+    #[test]
+    fn a_comma_in_a_path_is_doubled_for_qemu() {
+        let words = command_line(Path::new("image.elf"), Some(Path::new("a,b/core-0.boot")));
+        let loader = words
+            .last()
+            .and_then(|word| word.to_str())
+            .expect("the last word");
+        assert_eq!(loader, "loader,addr=0x400000,file=a,,b/core-0.boot,force-raw=on");
+        assert_eq!(
+            command_line(Path::new("image.elf"), None).last(),
+            Some(&OsString::from("image.elf"))
+        );
+    }
+
+    #[test]
+    fn the_end_of_a_core_is_noticed_once_and_told_with_its_last_lines() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let qemu = fake_qemu(
+            folder.path(),
+            "for i in 1 2 3 4 5 6 7; do echo line $i; done; echo oh no >&2; exit 3",
+        );
+        let mut fleet = QemuFleet::start(&qemu, Path::new("x.elf"), &[vec![1], vec![2]], folder.path())
+            .expect("it starts");
+        let mut ended = all_ended(&mut fleet, 2);
+        ended.sort_unstable();
+        assert_eq!(ended, [0, 1]);
+        assert_eq!(fleet.newly_ended(), [0_u16; 0]);
+        assert_eq!(fleet.how_ended(1).as_deref(), Some("its QEMU ended with code 3"));
+        assert_eq!(
+            fleet.last_output(1),
+            ["line 4", "line 5", "line 6", "line 7", "oh no"]
+        );
+        assert_eq!(
+            fs::read(folder.path().join("core-1.boot")).expect("a boot block"),
+            [2]
+        );
+    }
+
+    #[test]
+    fn dropping_the_fleet_ends_its_processes_and_no_others() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let qemu = fake_qemu(folder.path(), "exec sleep 60");
+        let start = |name: &str| {
+            QemuFleet::start(&qemu, Path::new("x.elf"), &[vec![1]], &folder.path().join(name))
+                .expect("it starts")
+        };
+        let (dropped, mut kept) = (start("dropped"), start("kept"));
+        let gone = dropped.process_ids()[0];
+        drop(dropped);
+        assert!(!Path::new(&format!("/proc/{gone}")).exists());
+        assert_eq!(kept.newly_ended(), [0_u16; 0]);
+    }
+
+    #[test]
+    fn a_missing_emulator_is_named() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let missing = folder.path().join("no-such-qemu");
+        match QemuFleet::start(&missing, Path::new("x.elf"), &[vec![1]], folder.path()) {
+            Err(error) => assert!(error.to_string().contains("no-such-qemu"), "{error}"),
+            // `setpriv` starts and finds nothing to run.
+            Ok(mut fleet) => {
+                assert_eq!(all_ended(&mut fleet, 1), [0]);
+                assert!(fleet.last_output(0).join(" ").contains("no-such-qemu"));
+            }
+        }
+    }
+}
