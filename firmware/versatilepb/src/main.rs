@@ -29,6 +29,10 @@ fn start() -> ! {
     // A lost announcement costs nothing: requests for the address are answered.
     let _ = network.announce();
     match node::run::<ImageProfile, ImageNeeds>(&boot, BOARD, network, Counter, memory::stack_use) {
+        Ok(outcome) if outcome.stack.used >= outcome.stack.size => die(
+            &Words::of("the stack ran over: enlarge _sys_stack_size in memory.x"),
+            Exit::Fault,
+        ),
         Ok(_) => exit(Exit::Done),
         Err(fault) => die(&Words::of(fault.as_str()), Exit::Fault),
     }

@@ -16,9 +16,6 @@ unsafe extern "C" {
 /// What unused stack looks like: no address, no small number, and odd.
 const PAINT: u32 = 0xDEAD_57AC | 1;
 
-/// Words left unpainted below the frame that paints.
-const MARGIN: usize = 64;
-
 /// The boot block, as far as it may reach.
 pub fn boot_block() -> &'static [u8] {
     let (start, size) = (&raw const __boot_block, &raw const __boot_block_size);
@@ -34,16 +31,21 @@ fn stack() -> Range<*mut u32> {
     start.cast_mut()..end.cast_mut()
 }
 
+/// Words below the stack pointer that are not painted: room for what this function itself saves.
+const MARGIN: usize = 16;
+
 /// Paints the unused part of the stack. To be called once, from the first function.
 #[inline(never)]
 pub fn paint_stack() {
-    let here = 0u32;
-    let Range { start, .. } = stack();
-    let mut word = start;
-    let end = (&raw const here).cast_mut().wrapping_sub(MARGIN);
+    let pointer: *mut u32;
+    // SAFETY: reads the stack pointer, and nothing else.
+    unsafe { core::arch::asm!("mov {}, sp", out(reg) pointer, options(nomem, nostack, preserves_flags)) };
+    let (mut word, end) = (stack().start, pointer.wrapping_sub(MARGIN));
     while word < end {
-        // SAFETY: `word` is in the stack's memory and far enough below this function's frame that no live variable is there. The
-        // write is volatile so that no call to a fill function, whose frame would be painted over, is made of the loop.
+        // SAFETY:
+        // - `word` is in the stack's memory, and so far below the stack pointer that no variable is there, nor what this function
+        //   saves, wherever in it the compiler puts that;
+        // - the write is volatile, so that no call to a fill function, whose frame would be painted over, is made of the loop.
         unsafe { word.write_volatile(PAINT) };
         word = word.wrapping_add(1);
     }
