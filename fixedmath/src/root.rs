@@ -5,8 +5,8 @@
 //! has room for and no more.
 //!
 //! Ours ([`of_square`], [`of_length`], [`of_fraction`]) are correctly rounded and take a third of the time: the argument
-//! is shifted until it fills 64 bits, a line from a 48-entry table gives its reciprocal root to 2^-12, one Newton step
-//! to 2^-24, and the remainder of the root this gives, which is exact in integers, mends the root to its last bit.
+//! is shifted until it fills 64 bits, a line from a 24-entry table gives its reciprocal root to 2^-10, one Newton step
+//! to 2^-19, and the remainder of the root this gives, which is exact in integers, mends the root to its last bit.
 
 use fixed::types::{I2F30, I16F16, I32F32, I48F16};
 
@@ -105,8 +105,7 @@ pub const fn nearest(v: u64) -> u32 {
     if v == 0 {
         return 0;
     }
-    let shift = v.leading_zeros() / 2;
-    let normal = v << (2 * shift);
+    let (normal, shift) = normalised(v);
     let root = floor_of_normal(normal);
     if shift == 0 {
         let remainder = normal.wrapping_sub(root as u64 * root as u64);
@@ -123,8 +122,22 @@ pub const fn floor(v: u64) -> u32 {
     if v == 0 {
         return 0;
     }
-    let shift = v.leading_zeros() / 2;
-    floor_of_normal(v << (2 * shift)) >> shift
+    let (normal, shift) = normalised(v);
+    floor_of_normal(normal) >> shift
+}
+
+/// `v` > 0 shifted left by the even number of places that brings it to 2^62 or more, and half that number.
+#[inline]
+pub(crate) const fn normalised(v: u64) -> (u64, u32) {
+    let (upper, lower) = ((v >> 32) as u32, v as u32);
+    if upper == 0 {
+        // A shift by less than a word is four instructions, by any number of places nine.
+        let places = lower.leading_zeros() & !1;
+        return ((lower << places) as u64 * (1 << 32), places / 2 + 16);
+    }
+    let places = upper.leading_zeros() & !1;
+    let upper = upper << places | (lower >> 1) >> (31 - places);
+    ((upper as u64) << 32 | (lower << places) as u64, places / 2)
 }
 
 /// The root of `v` >= 2^62, rounded down.
@@ -132,12 +145,12 @@ pub const fn floor(v: u64) -> u32 {
 const fn floor_of_normal(v: u64) -> u32 {
     let x = (v >> 32) as u32;
     let y = reciprocal_seed(x);
-    let rough = upper_of(x, y, 31);
-    // A root off by e leaves a remainder of 2 root e, and y is 1 / root: |e| < 2^9 ulp here, so 54 bits of it fit.
+    let rough = upper(x, y) << 2;
+    // A root off by e leaves a remainder of 2 root e, and y is 1 / root: |e| < 2^-19 here, so 50 of its bits matter.
     let remainder = v.wrapping_sub(rough as u64 * rough as u64) as i64;
-    let mend = ((remainder >> 10) as i32 as i64 * (y >> 1) as i64) >> 53;
-    let root = (rough as i64 + mend) as u32;
-    // Truncation above leaves the root at most one off.
+    let mend = ((remainder >> 14) as i32 as i64 * y as i64) >> 49;
+    let root = (rough as i32).wrapping_add(mend as i32) as u32;
+    // What was cut off above leaves the root at most one off.
     let remainder = v.wrapping_sub(root as u64 * root as u64) as i64;
     if remainder < 0 {
         root - 1
@@ -148,47 +161,48 @@ const fn floor_of_normal(v: u64) -> u32 {
     }
 }
 
-const fn upper_of(a: u32, b: u32, shift: u32) -> u32 {
-    ((a as u64 * b as u64) >> shift) as u32
+/// The upper word of a product: one `UMULL`.
+const fn upper(a: u32, b: u32) -> u32 {
+    ((a as u64 * b as u64) >> 32) as u32
 }
 
-/// `1 / sqrt(x / 2^32)` in 1:31 for `x` >= 2^30, from below, within 2^-23.
+/// `1 / sqrt(x / 2^32)` in 2:30 for `x` >= 2^30, from below, within 2^-19: a line, and one Newton step
+/// `y (3 - x y^2) / 2`, which never overshoots.
 #[inline]
-pub(crate) const fn reciprocal_seed(x: u32) -> u32 {
-    let line = LINES[(x >> 26) as usize - 16];
-    let along = (x << 6) >> 16;
-    let y = (line & 0x1_ffff) - (((line >> 17) * along) >> 16);
-    // x y^2 is 1 - e: the wrap of 32 bits takes the 1 away.
-    let root = upper_of(x, y, 16);
-    let e = upper_of(root, y, 16).wrapping_neg() as i32;
-    ((y << 15) as i32).wrapping_add((y as i32 * (e >> 7)) >> 11) as u32
+const fn reciprocal_seed(x: u32) -> u32 {
+    let [start, loss] = LINES[(x >> 27) as usize];
+    let y = start - upper(loss, x << 5);
+    // x y^2 is 1 - e in 4:28; what the two products cut off must not count as e, or y could reach 2 and the sign bit.
+    let e = (1 << 28) - 2 - upper(upper(x, y), y) as i32;
+    (y as i32 + ((y as i32 as i64 * (e << 3) as i64) >> 32) as i32) as u32
 }
 
-/// `1 / sqrt(x / 2^32)` in 1:31 for `x` >= 2^30, from below, within 2 ulp of 2^-31.
+/// `1 / sqrt(x / 2^32)` in 2:30 for `x` >= 2^30, from below, within 2 ulp: below 2 even for x = 2^30.
 #[inline]
 pub(crate) const fn reciprocal(x: u32) -> u32 {
     let y = reciprocal_seed(x);
-    let root = upper_of(x, y, 31);
-    let e = upper_of(root, y, 31).wrapping_neg() as i32;
-    (y as i32).wrapping_add(((y as i64 * e as i64) >> 33) as i32) as u32
+    // A second step, with the root in 1:31 and e in 64 bits.
+    let root = ((x as u64 * y as u64) >> 31) + 1;
+    let e = ((1 << 61) - (root as u32 as u64 * y as u64) as i64) >> 14;
+    (y as i32 + ((y as i32 as i64 * e as i32 as i64) >> 48) as i32) as u32
 }
 
-/// Lines for `1 / sqrt(x)` on the 48 segments of [1/4, 1) between multiples of 1/64: the value at the segment's start in
-/// the low 17 bits (1:16), what it loses along the segment in the upper 15.
-static LINES: [u32; 48] = lines();
+/// Lines for `1 / sqrt(x)` in 2:30 between multiples of 1/32 of [1/4, 1): the value at the segment's start, and what it
+/// loses along the segment. The first eight, below 1/4, are never read and spare the index its subtraction.
+static LINES: [[u32; 2]; 32] = lines();
 
-const fn lines() -> [u32; 48] {
-    let mut lines = [0; 48];
-    let mut segment = 0;
-    while segment < 48 {
-        // 2^16 / sqrt(i / 64) is the root of 2^38 / i.
-        let i = segment as u64 + 16;
-        let start = slow_floor((1 << 38) / i);
-        let end = slow_floor((1 << 38) / (i + 1));
-        let middle = slow_floor((1 << 39) / (2 * i + 1));
+const fn lines() -> [[u32; 2]; 32] {
+    let mut lines = [[0; 2]; 32];
+    let mut segment = 8;
+    while segment < 32 {
+        // 2^30 / sqrt(i / 32) is the root of 2^65 / i: with 2^5 taken out of the root, which is that of 2^55 * 2^10 / i.
+        let i = segment as u64;
+        let start = slow_floor((1 << 63) / i) * 2;
+        let end = slow_floor((1 << 63) / (i + 1)) * 2;
+        let middle = slow_floor((1 << 63) / (2 * i + 1) * 2) * 2;
         // The chord lies above the curve: half its worst distance balances the error.
-        let sag = (start + end) / 2 - middle;
-        lines[segment] = (start - sag.div_ceil(2) - 1) | (start - end) << 17;
+        let sag = start / 2 + end / 2 - middle;
+        lines[segment] = [start - sag / 2, start - end];
         segment += 1;
     }
     lines

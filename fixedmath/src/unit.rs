@@ -23,20 +23,24 @@ pub const fn normalised(v: [I2F30; 3]) -> Option<[I2F30; 3]> {
     if square < 1 << 30 {
         return None;
     }
-    let shift = square.leading_zeros() / 2;
-    let inverse = root::reciprocal((square << (2 * shift) >> 32) as u32);
+    let (normal, shift) = root::normalised(square);
+    let inverse = root::reciprocal((normal >> 32) as u32) as i32;
+    // No component exceeds the length, which is below 2^(32 - shift): brought up to 31 bits they lose nothing.
+    let [x, y, z] = if shift == 0 {
+        [x >> 1, y >> 1, z >> 1]
+    } else {
+        [x << (shift - 1), y << (shift - 1), z << (shift - 1)]
+    };
     Some([
-        stretched(x, shift, inverse),
-        stretched(y, shift, inverse),
-        stretched(z, shift, inverse),
+        stretched(x, inverse),
+        stretched(y, inverse),
+        stretched(z, inverse),
     ])
 }
 
-/// `component / length` in 2:30 for a length of `2^(32 - shift) / inverse` (1:31), to the nearest.
-const fn stretched(component: i32, shift: u32, inverse: u32) -> I2F30 {
-    // |component| <= length < 2^(32 - shift) in bits, so the shifted component stays below 2^32.
-    let product = ((component as i64) << shift >> 1) * (inverse as i64);
-    I2F30::from_bits(((product + (1 << 31)) >> 32) as i32)
+/// `component inverse` in 2:30 for a component in 1:31 and an inverse in 2:30.
+const fn stretched(component: i32, inverse: i32) -> I2F30 {
+    I2F30::from_bits(((component as i64 * inverse as i64 + (1 << 30)) >> 31) as i32)
 }
 
 /// A vector whose length is 1 + e brought to length 1 - 3/2 e^2: one Newton step, no root.

@@ -162,7 +162,7 @@ impl Numbers for Double {
         dot(v, d)
     }
 
-    fn rounded(projection: f64) -> f64 {
+    fn length_of(projection: f64) -> f64 {
         projection
     }
 

@@ -63,7 +63,7 @@ impl<'s, P: Profile, F: Needs> Path<'s, P, F> {
                 break;
             };
             let surface = &hit.sphere.surface;
-            if surface.emission != [0; 3] {
+            if surface.emits {
                 for channel in 0..3 {
                     radiance[channel] = radiance[channel]
                         + P::Numbers::emitted(throughput[channel], surface.emission[channel]);

@@ -17,6 +17,13 @@ pub struct Ray<'s, N: Numbers> {
     pub leaves: Option<&'s Sphere<N>>,
 }
 
+impl<N: Numbers> Ray<'_, N> {
+    #[inline]
+    fn leaves(&self, sphere: &Sphere<N>) -> bool {
+        self.leaves.is_some_and(|leaves| ptr::eq(leaves, sphere))
+    }
+}
+
 /// A point on a sphere.
 #[derive(Clone, Copy, Debug)]
 pub struct Hit<'s, N: Numbers> {
@@ -56,7 +63,7 @@ impl Intersection for Textbook {
             if discriminant < N::NO_SQUARE {
                 continue;
             }
-            let (b, root) = (N::rounded(b), N::root(discriminant));
+            let (b, root) = (N::length_of(b), N::root(discriminant));
             let (near, far) = (b - root, b + root);
             let t = if near > epsilon { near } else { far };
             if t > epsilon && t < best.0 {
@@ -76,34 +83,76 @@ impl Intersection for Textbook {
 
 /// Ours: by the power of a point, which says without a root whether a hit can be nearer than the best so far.
 ///
-/// With `b = (c - o) . d` and the power of the origin turned round, `p = r^2 - |c - o|^2` (positive inside), the point at
-/// distance `t` lies outside a sphere exactly when `t^2 - 2 b t > p`. A hollow sphere, seen from inside, is therefore
-/// nearer than `t` exactly when that holds; only then is its root `b + sqrt(b^2 + p)` taken. A solid one has its near
-/// root only where `p < 0 < b`. From the sphere that a ray leaves, one root is the start itself, which is left out by
-/// identity and not by distance; the other is `2 b`, exactly. The hit point is put back on its sphere.
+/// With `b = (c - o) . d` and the power of the origin turned round, `p = r^2 - |c - o|^2` (positive inside), the roots are
+/// `b - sqrt(b^2 + p)` and `b + sqrt(b^2 + p)`. A hollow sphere is seen from inside and has only the second; that one is
+/// nearer than `t` exactly when `t > b` and `(t - b)^2 > b^2 + p`, and only then is the root taken. A solid one has only
+/// the first, and only where `p < 0 < b`, unless it lets light through. From the sphere that a ray leaves, one root is the
+/// start itself, which is left out by identity and not by distance; the other is `2 b`, exactly. The hit point is put back
+/// on its sphere.
 #[derive(Clone, Copy, Debug)]
 pub enum Power {}
 
-impl Power {
-    /// The nearest distance on a solid sphere, met at a projection of `b`.
-    fn solid<N: Numbers>(
-        sphere: &Sphere<N>,
-        power: N::Square,
-        b: N::Projection,
-        epsilon: N::Length,
-    ) -> Option<N::Length> {
-        let length = N::rounded(b);
-        let inside = power >= N::NO_SQUARE;
-        if inside && !sphere.surface.transmits() || !inside && length <= N::NOTHING {
-            return None;
+/// The best hit so far.
+struct Nearest<'s, N: Numbers> {
+    t: N::Length,
+    sphere: Option<&'s Sphere<N>>,
+}
+
+impl<'s, N: Numbers> Nearest<'s, N> {
+    #[inline]
+    fn hollow(&mut self, sphere: &'s Sphere<N>, ray: &Ray<'s, N>, epsilon: N::Length) {
+        let to_centre = vector::sub(sphere.centre, ray.origin);
+        let b = N::length_of(N::project(to_centre, ray.direction));
+        if ray.leaves(sphere) {
+            return self.chord(sphere, b, epsilon);
         }
-        let discriminant = N::squared(b) + power;
-        if discriminant < N::NO_SQUARE {
-            return None;
+        let discriminant = N::product(b, b) + (sphere.square - N::dot(to_centre, to_centre));
+        let beyond = self.t - b;
+        if beyond <= N::NOTHING || N::product(beyond, beyond) <= discriminant {
+            return;
+        }
+        // Rounding may have put the start an ulp outside: then the hit is at once, and not behind.
+        let t = b + N::root(discriminant);
+        self.t = if t < N::NOTHING { N::NOTHING } else { t };
+        self.sphere = Some(sphere);
+    }
+
+    #[inline]
+    fn solid(&mut self, sphere: &'s Sphere<N>, ray: &Ray<'s, N>, epsilon: N::Length) {
+        let to_centre = vector::sub(sphere.centre, ray.origin);
+        let projection = N::project(to_centre, ray.direction);
+        let b = N::length_of(projection);
+        let transmits = sphere.surface.transmits();
+        if b <= N::NOTHING && !transmits {
+            return;
+        }
+        if ray.leaves(sphere) {
+            if transmits {
+                self.chord(sphere, b, epsilon);
+            }
+            return;
+        }
+        let power = sphere.square - N::dot(to_centre, to_centre);
+        let discriminant = N::squared(projection) + power;
+        let inside = power >= N::NO_SQUARE;
+        let hidden = if inside { !transmits } else { b <= N::NOTHING };
+        if hidden || discriminant < N::NO_SQUARE {
+            return;
         }
         let root = N::root(discriminant);
-        let t = if inside { length + root } else { length - root };
-        (t > epsilon).then_some(t)
+        let t = if inside { b + root } else { b - root };
+        if t > epsilon && t < self.t {
+            (self.t, self.sphere) = (t, Some(sphere));
+        }
+    }
+
+    /// The far end of the chord that starts where the ray leaves `sphere`.
+    #[inline]
+    fn chord(&mut self, sphere: &'s Sphere<N>, b: N::Length, epsilon: N::Length) {
+        let t = b + b;
+        if t > epsilon && t < self.t {
+            (self.t, self.sphere) = (t, Some(sphere));
+        }
     }
 }
 
@@ -114,61 +163,19 @@ impl Intersection for Power {
         ray: &Ray<'s, N>,
         epsilon: N::Length,
     ) -> Option<Hit<'s, N>> {
-        let mut best = None;
-        let mut nearest = N::FAR;
-        let mut nearest_square = N::product(nearest, nearest);
-        let left = |sphere: &Sphere<N>| ray.leaves.is_some_and(|leaves| ptr::eq(leaves, sphere));
-
+        let mut nearest = Nearest {
+            t: N::FAR,
+            sphere: None,
+        };
         for sphere in scene.hollow() {
-            let to_centre = vector::sub(sphere.centre, ray.origin);
-            let b = N::rounded(N::project(to_centre, ray.direction));
-            let t = if left(sphere) {
-                let chord = b + b;
-                if chord <= epsilon || chord >= nearest {
-                    continue;
-                }
-                chord
-            } else {
-                let power = sphere.square - N::dot(to_centre, to_centre);
-                let half = N::product(b, nearest);
-                if nearest_square - power <= half + half {
-                    continue;
-                }
-                // Rounding may have put the start an ulp outside: then the hit is at once, and not behind.
-                let t = b + N::root(N::product(b, b) + power);
-                if t < N::NOTHING { N::NOTHING } else { t }
-            };
-            best = Some(sphere);
-            nearest = t;
-            nearest_square = N::product(t, t);
+            nearest.hollow(sphere, ray, epsilon);
         }
-
         for sphere in scene.solid() {
-            let to_centre = vector::sub(sphere.centre, ray.origin);
-            let b = N::project(to_centre, ray.direction);
-            let t = if left(sphere) {
-                let b = N::rounded(b);
-                let chord = b + b;
-                if !sphere.surface.transmits() || chord <= epsilon {
-                    continue;
-                }
-                chord
-            } else {
-                let power = sphere.square - N::dot(to_centre, to_centre);
-                match Self::solid(sphere, power, b, epsilon) {
-                    Some(t) => t,
-                    None => continue,
-                }
-            };
-            if t < nearest {
-                best = Some(sphere);
-                nearest = t;
-            }
+            nearest.solid(sphere, ray, epsilon);
         }
-
-        let sphere = best?;
+        let sphere = nearest.sphere?;
         let from_centre =
-            [0, 1, 2].map(|i| ray.origin[i] - sphere.centre[i] + N::scale(nearest, ray.direction[i]));
+            [0, 1, 2].map(|i| ray.origin[i] - sphere.centre[i] + N::scale(nearest.t, ray.direction[i]));
         let outward = N::normal(from_centre, sphere.reciprocal);
         let point = [0, 1, 2].map(|i| sphere.centre[i] + N::scale(sphere.radius, outward[i]));
         Some(Hit {

@@ -7,6 +7,8 @@ use crate::vector;
 /// A surface.
 #[derive(Clone, Copy, Debug)]
 pub struct Surface<N: Numbers> {
+    /// Whether it emits at all.
+    pub emits: bool,
     /// Radiance given off, 16:16 per channel.
     pub emission: [u32; 3],
     /// Share of light reflected or transmitted, per channel.

@@ -12,8 +12,9 @@ use core::ops::{Add, Neg, Sub};
 /// A set of number formats.
 ///
 /// Constructors take the scene blob's formats (16:16, 2:30, 4:28, 32:32), so one blob serves every profile and the
-/// double-precision oracle. Ranges are the scene compiler's to guarantee: no point a ray can reach lies 2^14 or more from
-/// a sphere's centre, so no length leaves 16:16 and no square leaves 32:32.
+/// double-precision oracle. Ranges are the scene compiler's to guarantee: no point a ray can reach lies
+/// 2^15 / 3 or more from a sphere's centre, nor is any radius longer, so that neither a length nor the difference of a
+/// distance and a projection leaves 16:16, and no square leaves 32:32.
 pub trait Numbers: Copy + Debug + 'static {
     /// Positions and distances.
     type Length: Copy + Debug + PartialOrd + Add<Output = Self::Length> + Sub<Output = Self::Length>;
@@ -75,8 +76,8 @@ pub trait Numbers: Copy + Debug + 'static {
     fn root(square: Self::Square) -> Self::Length;
     /// `v . d`.
     fn project(v: [Self::Length; 3], d: [Self::Unit; 3]) -> Self::Projection;
-    /// A projection as a length.
-    fn rounded(projection: Self::Projection) -> Self::Length;
+    /// A projection as a length, cut to its format.
+    fn length_of(projection: Self::Projection) -> Self::Length;
     /// A projection's square.
     fn squared(projection: Self::Projection) -> Self::Square;
     /// `l u`.
@@ -86,10 +87,9 @@ pub trait Numbers: Copy + Debug + 'static {
 
     /// `a . b` of directions.
     fn cosine(a: [Self::Unit; 3], b: [Self::Unit; 3]) -> Self::Unit;
-    /// `a b`.
+    /// `a b`, cut to its format.
     fn times(a: Self::Unit, b: Self::Unit) -> Self::Unit;
-    /// `v` brought to unit length, or `otherwise` where it has next to none. Components have magnitudes below 2, their
-    /// vector below sqrt(12).
+    /// `v` brought to unit length, or `otherwise` where it has next to none. Components lie in [-2, 2).
     fn normalised(v: [Self::Unit; 3], otherwise: [Self::Unit; 3]) -> [Self::Unit; 3];
     /// Half the sum of two unit vectors brought to unit length, or `otherwise`.
     fn bisector(a: [Self::Unit; 3], b: [Self::Unit; 3], otherwise: [Self::Unit; 3]) -> [Self::Unit; 3];

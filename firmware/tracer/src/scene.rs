@@ -155,6 +155,7 @@ impl<N: Numbers> Sphere<N> {
             reciprocal: N::reciprocal(record.radius, record.reciprocal, record.shift),
             hollow,
             surface: Surface {
+                emits: record.emission != [0; 3],
                 emission: record.emission,
                 reflectance: record.reflectance.map(N::weight),
                 survivor: record.survivor.map(N::weight),

@@ -109,13 +109,15 @@ pub fn walk<P: Profile, F: Needs>(
 }
 
 /// Renders unit `id` into `sums` and returns how many rays it took. Pixels past the picture's end are zero.
+///
+/// 4,096 samples of radiance up to 4,095 leave the 32:32 sums 8 bits to spare for paths that meet several lights.
 pub fn render<P: Profile, F: Needs>(scene: &Scene<P::Numbers>, plan: &Plan, id: u32, sums: &mut Sums) -> u32 {
     *sums = [[0; 3]; RUN];
     let mut rays = 0;
     walk::<P, F>(scene, plan, id, |pixel, sample| {
         rays += sample.rays;
         for (sum, radiance) in sums[pixel].iter_mut().zip(sample.radiance) {
-            *sum = sum.saturating_add(P::Numbers::radiance_bits(radiance));
+            *sum += P::Numbers::radiance_bits(radiance);
         }
     });
     // Summed in 32:32 and rounded once.

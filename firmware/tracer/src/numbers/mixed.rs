@@ -46,7 +46,8 @@ impl Numbers for Mixed {
     type Reciprocal = Reciprocal;
 
     const NOTHING: I16F16 = I16F16::ZERO;
-    const FAR: I16F16 = I16F16::MAX;
+    /// 2^16 / 3, twice the longest radius.
+    const FAR: I16F16 = I16F16::from_bits(0x5555_5555);
     const ONE: I2F30 = I2F30::ONE;
     const ZERO: I2F30 = I2F30::ZERO;
     const NO_SQUARE: I32F32 = I32F32::ZERO;
@@ -103,8 +104,8 @@ impl Numbers for Mixed {
     }
 
     #[inline]
-    fn rounded(projection: i64) -> I16F16 {
-        I16F16::from_bits(((projection + (1 << 29)) >> 30) as i32)
+    fn length_of(projection: i64) -> I16F16 {
+        I16F16::from_bits((projection >> 30) as i32)
     }
 
     #[inline]
@@ -139,7 +140,7 @@ impl Numbers for Mixed {
 
     #[inline]
     fn times(a: I2F30, b: I2F30) -> I2F30 {
-        I2F30::from_bits(((i64::from(a.to_bits()) * i64::from(b.to_bits()) + (1 << 29)) >> 30) as i32)
+        I2F30::from_bits(((i64::from(a.to_bits()) * i64::from(b.to_bits())) >> 30) as i32)
     }
 
     #[inline]

@@ -84,7 +84,7 @@ impl Numbers for Published {
         I16F16::from_bits(sum_of_products(v, d) as i32)
     }
 
-    fn rounded(projection: I16F16) -> I16F16 {
+    fn length_of(projection: I16F16) -> I16F16 {
         projection
     }
 
