@@ -6,8 +6,9 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use crate::compare::{Comparison, Tiles};
+use crate::compare::{CompareError, Comparison, Tiles, compare};
 use crate::file::{WriteError, write_whole};
+use crate::picture::{Estimate, Picture};
 
 /// The whole report.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -179,6 +180,24 @@ impl Error {
     }
 }
 
+impl LockstepError {
+    /// How far `picture` is from `lockstep`, the same samples in exact arithmetic.
+    pub fn between(picture: &Picture, lockstep: &Picture) -> Result<Self, CompareError> {
+        // Both are taken as exact: their noise is the same and cancels.
+        let exact = |picture: &Picture| Estimate {
+            picture: picture.clone(),
+            variance: None,
+            spp: None,
+        };
+        let comparison = compare(&exact(picture), &exact(lockstep))?;
+        Ok(Self {
+            bias: comparison.bias,
+            rmse: comparison.rmse,
+            max_abs: comparison.max_abs,
+        })
+    }
+}
+
 impl TileTest {
     fn new(tiles: &Tiles) -> Self {
         Self {
@@ -203,8 +222,6 @@ impl Report {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::compare::compare;
-    use crate::picture::{Estimate, Picture};
     use serde_json::Value;
 
     fn report() -> Report {
@@ -308,6 +325,16 @@ mod tests {
             (None, None, None)
         );
         assert_eq!(Error::new(&comparison, None, true).tiles.unwrap().max_z, None);
+    }
+
+    #[test]
+    fn lockstep_errors_are_plain_differences() {
+        let picture = Picture::new(2, 1, vec![Some([0.5, 0.5, 0.5]), Some([1.0, 1.0, 1.3])]);
+        let lockstep = Picture::new(2, 1, vec![Some([0.5, 0.5, 0.5]), Some([1.0, 1.0, 1.0])]);
+        let error = LockstepError::between(&picture, &lockstep).unwrap();
+        assert!((error.max_abs - 0.3).abs() < 1e-12);
+        assert!((error.rmse - (0.09f64 / 6.0).sqrt()).abs() < 1e-12);
+        assert!((error.bias.unwrap() - 0.3 / 4.5).abs() < 1e-12);
     }
 
     #[test]

@@ -35,6 +35,8 @@ pub struct Comparison {
     pub rmse: f64,
     /// The square of `rmse` before it was cut off at zero.
     pub squared_error: SquaredError,
+    /// The largest difference of any channel of any pixel, noise and all.
+    pub max_abs: f64,
     /// Peak signal to noise on the display: both pictures clamped to [0, 1] with gamma 2.2 but not quantised, peak 1,
     /// noise and all, for it shows too. `None` if they do not differ.
     pub psnr_db: Option<f64>,
@@ -107,6 +109,12 @@ impl Pair {
     fn difference(&self, channel: usize) -> f64 {
         self.image[channel] - self.reference[channel]
     }
+
+    fn largest_difference(&self) -> f64 {
+        (0..3)
+            .map(|channel| self.difference(channel).abs())
+            .fold(0.0, f64::max)
+    }
 }
 
 /// Compares `image` with `reference`.
@@ -144,6 +152,7 @@ pub fn compare(image: &Estimate, reference: &Estimate) -> Result<Comparison, Com
         reference_mean,
         rmse: squared_error.corrected.max(0.0).sqrt(),
         squared_error,
+        max_abs: present.iter().map(Pair::largest_difference).fold(0.0, f64::max),
         psnr_db: psnr_db(&present),
         tiles: tiles::test(&pixels, size, reference_level / 3.0),
         uniformity: uniformity(&present).filter(|_| noisy),

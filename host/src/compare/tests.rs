@@ -96,6 +96,7 @@ fn without_noise_every_figure_is_exact() {
     let level: f64 = comparison.reference_mean.iter().sum::<f64>() / 3.0;
     assert!((comparison.bias.unwrap() - 0.1 / level).abs() < 1e-12);
     assert!((comparison.rmse - 0.1).abs() < 1e-12);
+    assert!((comparison.max_abs - 0.1).abs() < 1e-12);
     assert!(comparison.squared_error.standard_error < 1e-12);
     assert_eq!(comparison.bias_standard_error, None);
     assert_eq!(comparison.uniformity, None);

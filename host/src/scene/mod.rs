@@ -190,3 +190,6 @@ impl Scene {
         })
     }
 }
+
+#[cfg(test)]
+mod tests;
