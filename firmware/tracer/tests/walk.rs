@@ -246,7 +246,7 @@ fn units_cover_every_sample_once() {
         let mut samples = vec![0; usize::from(width) * usize::from(height)];
         for id in 0..plan.units().unwrap() {
             let extent = plan.extent(id);
-            assert!((1..=RUN as u8).contains(&extent.pixels) && extent.samples % 4 == 0);
+            assert!((1..=RUN as u8).contains(&extent.pixels) && extent.samples.is_multiple_of(4));
             for pixel in 0..usize::from(extent.pixels) {
                 samples[extent.first_pixel as usize + pixel] += u32::from(extent.samples);
             }

@@ -1,0 +1,102 @@
+//! The profiles against double precision: the whole picture, every tile, and path by path.
+//!
+//! Seeds are fixed, so each of these has one outcome. The bounds are what sampling noise allows, not what was found.
+
+use host::compare::{Comparison, compare};
+use host::picture::Estimate;
+use host::reference::{self, Job};
+use tracer::profile::{Paper, Precise, Profile};
+use whole_system::{cornell, estimate, plan};
+
+fn reference(width: u16, height: u16, spp: u32) -> Estimate {
+    let job = Job {
+        width,
+        height,
+        spp,
+        termination: reference::Termination::Roulette,
+        seed: 1,
+    };
+    reference::render(&cornell(), &job, |_| ())
+}
+
+fn grey(mean: [f64; 3]) -> f64 {
+    mean.iter().sum::<f64>() / 3.0
+}
+
+fn show(name: &str, found: &Comparison) {
+    let tiles = &found.tiles;
+    println!(
+        "{name}: mean {:.5} against {:.5}, bias {:+.3} % (standard error {:.3} %), rmse {:.5}, worst tile {:+.2} %, \
+         largest z {:.2} of {} with a threshold of {:.2}",
+        grey(found.mean),
+        grey(found.reference_mean),
+        100.0 * found.bias.unwrap(),
+        100.0 * found.bias_standard_error.unwrap(),
+        found.rmse,
+        100.0 * tiles.most_biased().unwrap().bias,
+        tiles.max_z(),
+        tiles.tested(),
+        tiles.threshold_z,
+    );
+}
+
+/// 50 million samples on either side: the two means' noise is 0.07 % together, a third of the bound.
+#[test]
+fn precise_is_as_bright_as_double_precision() {
+    let reference = reference(256, 192, 1024);
+    let mean = grey(reference.picture.mean().unwrap());
+    assert!((mean - 0.3131).abs() < 0.001, "the reference itself: {mean}");
+    let (precise, _) = estimate::<Precise>(&cornell(), &plan::<Precise>(256, 192, 1024));
+    let found = compare(&precise, &reference).unwrap();
+    show("precise", &found);
+    assert!(found.bias.unwrap().abs() < 0.002);
+}
+
+#[test]
+fn no_tile_of_precise_is_further_off_than_chance_allows() {
+    let reference = reference(64, 48, 4096);
+    let (precise, _) = estimate::<Precise>(&cornell(), &plan::<Precise>(64, 48, 1024));
+    let found = compare(&precise, &reference).unwrap();
+    show("precise", &found);
+    assert_eq!(found.tiles.failed().count(), 0);
+}
+
+/// Not a virtue but a fact, and proof that the tile test sees an error of this size.
+#[test]
+fn tiles_of_paper_are_seen_to_be_off() {
+    let reference = reference(64, 48, 4096);
+    let (paper, _) = estimate::<Paper>(&cornell(), &plan::<Paper>(64, 48, 256));
+    let found = compare(&paper, &reference).unwrap();
+    show("paper", &found);
+    assert!(found.tiles.failed().count() > 0);
+}
+
+fn share_within<P: Profile>(limit: f64) -> f64 {
+    let (fixed, lockstep) = estimate::<P>(&cornell(), &plan::<P>(64, 48, 64));
+    let pairs = fixed
+        .picture
+        .pixels()
+        .iter()
+        .flatten()
+        .zip(lockstep.picture.pixels().iter().flatten());
+    let same = pairs
+        .filter(|(a, b)| (0..3).all(|i| (a[i] - b[i]).abs() < limit))
+        .count();
+    same as f64 / fixed.picture.pixels().len() as f64
+}
+
+/// A pixel of 64 samples walks about 430 rays; one path that rounding sends elsewhere spoils it.
+#[test]
+fn precise_walks_the_paths_of_its_double() {
+    let share = share_within::<Precise>(0.001);
+    println!(
+        "precise: {:.2} % of pixels within 0.001 of the lockstep oracle",
+        100.0 * share
+    );
+    assert!(share > 0.95, "{share}");
+    let share = share_within::<Paper>(0.001);
+    println!(
+        "paper: {:.2} % of pixels within 0.001 of the lockstep oracle",
+        100.0 * share
+    );
+}
