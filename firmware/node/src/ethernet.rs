@@ -55,6 +55,7 @@ pub struct Ethernet<'a> {
 
 impl<'a> Ethernet<'a> {
     /// The network of the core that `boot` describes.
+    #[inline(never)]
     pub fn new(boot: &Boot<'_>, frames: &'a mut dyn Frames) -> Self {
         Self {
             frames,

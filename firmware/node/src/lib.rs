@@ -96,6 +96,7 @@ pub fn run<P: Profile, N: Needs>(
 }
 
 /// Tells the host why this core ends. Tries once: who sends this has little left to rely on.
+#[inline(never)]
 pub fn last_words(boot: &Boot<'_>, network: &mut dyn Network, words: &str) -> Result<(), SendError> {
     let mut packet = [0; MAX_PAYLOAD];
     let report = Report::Fault(words);
@@ -110,6 +111,7 @@ pub fn last_words(boot: &Boot<'_>, network: &mut dyn Network, words: &str) -> Re
 }
 
 /// What the tracer has to know of the boot block.
+#[inline(never)]
 pub fn plan(boot: &Boot<'_>) -> Plan {
     Plan {
         width: boot.width,

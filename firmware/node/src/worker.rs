@@ -79,6 +79,7 @@ pub struct Worker<'a> {
 
 impl<'a> Worker<'a> {
     /// A worker that has said nothing yet.
+    #[inline(never)]
     pub fn new(
         boot: &'a Boot<'a>,
         plan: Plan,

@@ -10,6 +10,7 @@ const FLAGS: Register<u32> = unsafe { Register::new(0x101F_1018) };
 const TRANSMIT_FULL: u32 = 1 << 5;
 
 /// Writes one line.
+#[inline(never)]
 pub fn line(text: &str) {
     for byte in text.bytes().chain(*b"\r\n") {
         while FLAGS.read() & TRANSMIT_FULL != 0 {}

@@ -96,6 +96,7 @@ pub struct Smc91c111 {
 
 impl Smc91c111 {
     /// Resets and starts the controller. None where there is no such controller.
+    #[inline(never)]
     pub fn start(mac: [u8; 6]) -> Option<Self> {
         BANK.write(0);
         if BANK.read() & 0xFF00 != BANK_MARK {

@@ -30,13 +30,16 @@
 //!
 //! The bytes after the blob do not matter: a memory is longer than what was loaded into it.
 
-use crate::bytes::{Reader, Writer};
+use crate::bytes::Writer;
 use crate::{DecodeError, MAX_PIXELS, MAX_SAMPLES, Name, VERSION, crc32};
 
 const MAGIC: [u8; 4] = *b"PTBB";
 
 /// Bytes before the scene blob.
 pub const HEADER_LEN: usize = 80;
+
+/// Where the header's own checksum is.
+const CHECKSUM_AT: usize = 76;
 
 /// Bytes of a board's memory kept for the boot block, and so its greatest length.
 pub const MAX_LEN: usize = 4096;
@@ -160,61 +163,29 @@ impl<'a> Boot<'a> {
 
     /// Reads a block from the start of `memory`. Total: see the crate's contract of decoding.
     pub fn decode(memory: &'a [u8]) -> Result<Self, DecodeError> {
-        let mut reader = Reader::new(memory);
-        if reader.array()? != MAGIC {
+        let (header, rest) = memory.split_first_chunk().ok_or(DecodeError::Truncated)?;
+        let header = Header(header);
+        if header.at(0) != MAGIC {
             return Err(DecodeError::Magic);
         }
-        let version = reader.u16()?;
+        let version = header.u16_at(4);
         if version != VERSION {
             return Err(DecodeError::Version(version));
         }
-        if usize::from(reader.u16()?) != HEADER_LEN {
+        if usize::from(header.u16_at(6)) != HEADER_LEN {
             return Err(DecodeError::Range);
         }
-        let header = memory.first_chunk::<HEADER_LEN>().ok_or(DecodeError::Truncated)?;
-        let (covered, checksum) = header.split_at(HEADER_LEN - 4);
-        if crc32(covered).to_le_bytes() != checksum {
+        if crc32(&header.0[..CHECKSUM_AT]) != header.u32_at(CHECKSUM_AT) {
             return Err(DecodeError::Checksum);
         }
-        let (boot, scene_id) = Self::fields(reader)?;
+        let len = usize::try_from(header.u32_at(72)).map_err(|_| DecodeError::Range)?;
+        let scene = rest.get(..len).ok_or(DecodeError::Truncated)?;
+        if crc32(scene) != header.u32_at(16) {
+            return Err(DecodeError::Checksum);
+        }
+        let boot = header.fields(scene)?;
         boot.check()?;
-        if boot.scene_id() != scene_id {
-            return Err(DecodeError::Checksum);
-        }
         Ok(boot)
-    }
-
-    /// The fields after the header's length, and the scene id that the block claims.
-    fn fields(mut reader: Reader<'a>) -> Result<(Self, u32), DecodeError> {
-        let (core, cores, session, scene_id) = (reader.u16()?, reader.u16()?, reader.u32()?, reader.u32()?);
-        let boot = Self {
-            core,
-            cores,
-            session,
-            epoch: reader.u16()?,
-            width: reader.u16()?,
-            height: reader.u16()?,
-            samples_per_unit: reader.u16()?,
-            spp: reader.u32()?,
-            seed: reader.u64()?,
-            epsilon: i32::from_le_bytes(reader.array()?),
-            termination: reader.u8()?,
-            order: PixelOrder::from_code(reader.u8()?)?,
-            profile: {
-                zero(reader.u16()?)?;
-                Name::from_bytes(reader.array()?)?
-            },
-            collector: reader.array()?,
-            address: reader.array()?,
-            port: reader.u16()?,
-            scene: {
-                zero(reader.u16()?)?;
-                let len = usize::try_from(reader.u32()?).map_err(|_| DecodeError::Range)?;
-                let _checksum = reader.u32()?;
-                reader.rest().get(..len).ok_or(DecodeError::Truncated)?
-            },
-        };
-        Ok((boot, scene_id))
     }
 
     /// Ranges that the rest of the firmware relies on.
@@ -245,11 +216,50 @@ impl PixelOrder {
     }
 }
 
-/// Reserved fields are zero until a later version gives them a meaning.
-fn zero(reserved: u16) -> Result<(), DecodeError> {
-    if reserved == 0 {
-        Ok(())
-    } else {
-        Err(DecodeError::Range)
+/// A header, whose fields lie at the offsets of the table above. All of them are constants, so that none can be out of bounds and
+/// a core needs no code to see that.
+struct Header<'a>(&'a [u8; HEADER_LEN]);
+
+impl Header<'_> {
+    #[inline(always)]
+    fn at<const N: usize>(&self, offset: usize) -> [u8; N] {
+        core::array::from_fn(|index| self.0[offset + index])
+    }
+
+    #[inline(always)]
+    fn u16_at(&self, offset: usize) -> u16 {
+        u16::from_le_bytes(self.at(offset))
+    }
+
+    #[inline(always)]
+    fn u32_at(&self, offset: usize) -> u32 {
+        u32::from_le_bytes(self.at(offset))
+    }
+
+    fn fields<'a>(&self, scene: &'a [u8]) -> Result<Boot<'a>, DecodeError> {
+        let [termination, order] = self.at(44);
+        // Reserved fields are zero until a later version gives them a meaning.
+        if self.u16_at(46) != 0 || self.u16_at(70) != 0 {
+            return Err(DecodeError::Range);
+        }
+        Ok(Boot {
+            core: self.u16_at(8),
+            cores: self.u16_at(10),
+            session: self.u32_at(12),
+            epoch: self.u16_at(20),
+            width: self.u16_at(22),
+            height: self.u16_at(24),
+            samples_per_unit: self.u16_at(26),
+            spp: self.u32_at(28),
+            seed: u64::from_le_bytes(self.at(32)),
+            epsilon: i32::from_le_bytes(self.at(40)),
+            termination,
+            order: PixelOrder::from_code(order)?,
+            profile: Name::from_bytes(self.at(48))?,
+            collector: self.at(60),
+            address: self.at(64),
+            port: self.u16_at(68),
+            scene,
+        })
     }
 }

@@ -28,10 +28,6 @@ impl<'a> Reader<'a> {
         self.array().map(u32::from_le_bytes)
     }
 
-    pub(crate) fn u64(&mut self) -> Result<u64, DecodeError> {
-        self.array().map(u64::from_le_bytes)
-    }
-
     /// Everything that is left.
     pub(crate) fn rest(self) -> &'a [u8] {
         self.0
