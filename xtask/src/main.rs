@@ -1,2 +1,59 @@
-//! Stub.
-fn main() {}
+//! The project's commands. Thin: each verb is one file, and what a test needs to reach is in the host library.
+
+mod qemu_run;
+mod render;
+mod size;
+mod test;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+use host::setup::Install;
+
+/// The project's commands
+#[derive(Parser)]
+#[command(name = "cargo xtask", bin_name = "cargo xtask", version)]
+enum Verb {
+    /// Render a picture on emulated cores, and say how far it is from the truth
+    ///
+    /// Builds the image the scene needs, starts the cores and a collector, and writes image.png, image.exr,
+    /// reference.exr, difference.png and report.json. Installs what is missing first, and says what.
+    Render(render::Arguments),
+    /// Run everything that CI runs
+    Test(test::Arguments),
+    /// Run one image on one emulated core; the exit code is the core's
+    QemuRun(qemu_run::Arguments),
+    /// Print each image's bytes of code, data and stack against the budget
+    Size(size::Arguments),
+}
+
+/// The flag that several verbs share.
+#[derive(clap::Args)]
+struct SetUp {
+    /// Say what is missing on this machine, and stop instead of installing it
+    #[arg(long)]
+    no_install: bool,
+}
+
+impl SetUp {
+    fn install(&self) -> Install {
+        if self.no_install {
+            Install::Forbidden
+        } else {
+            Install::Allowed
+        }
+    }
+}
+
+fn main() -> ExitCode {
+    let done = match Verb::parse() {
+        Verb::Render(arguments) => render::run(&arguments),
+        Verb::Test(arguments) => test::run(&arguments),
+        Verb::QemuRun(arguments) => qemu_run::run(&arguments),
+        Verb::Size(arguments) => size::run(&arguments),
+    };
+    done.unwrap_or_else(|error| {
+        eprintln!("error: {error:#}");
+        ExitCode::FAILURE
+    })
+}

@@ -1,2 +1,103 @@
-//! Stub.
-fn main() {}
+//! The collector alone, for cores that are started elsewhere: other QEMUs, other hosts, real boards.
+
+use std::net::{Ipv4Addr, UdpSocket};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use clap::Parser;
+use host::collector::{self, CollectError};
+use host::firmware::Board;
+use host::interrupt;
+use host::job::options::PictureOptions;
+use host::job::{Job, JobError, boot_blocks};
+use host::session::{Route, Session};
+
+/// Collects a picture from cores that are started elsewhere.
+///
+/// Writes each core's boot block into a folder, to be loaded into the core's memory before it starts, and waits for the
+/// cores to call. `cargo xtask qemu-run ELF --boot FILE` starts such a core.
+#[derive(Parser)]
+struct Arguments {
+    #[command(flatten)]
+    picture: PictureOptions,
+    /// Board of the cores
+    #[arg(long, value_enum, default_value_t)]
+    board: Board,
+    /// UDP port to listen on
+    #[arg(long, value_name = "N", default_value_t = wire::DEFAULT_PORT)]
+    port: u16,
+    /// Folder for the boot blocks, core-0.boot and so on [default: boot in the folder for the results]
+    #[arg(long, value_name = "DIR")]
+    boot_dir: Option<PathBuf>,
+    /// This host's IPv4 address as the cores see it; QEMU's user-mode network shows the loopback as 10.0.2.2
+    #[arg(long, value_name = "A.B.C.D", default_value = "10.0.2.2")]
+    host_address: Ipv4Addr,
+    /// IPv4 address of core 0, core 1 having the next, and so on [default: each core is alone in QEMU's user-mode network]
+    #[arg(long, value_name = "A.B.C.D")]
+    first_address: Option<Ipv4Addr>,
+}
+
+fn main() -> ExitCode {
+    match interrupt::watch().map_err(|error| error.to_string()) {
+        Err(error) => fail(&error, ExitCode::FAILURE),
+        Ok(interrupted) => match run(&Arguments::parse(), interrupted) {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(error @ JobError::Interrupted(_)) => {
+                fail(&error.to_string(), ExitCode::from(interrupt::EXIT_CODE))
+            }
+            Err(error) => fail(&error.to_string(), ExitCode::FAILURE),
+        },
+    }
+}
+
+fn fail(error: &str, code: ExitCode) -> ExitCode {
+    eprintln!("error: {error}");
+    code
+}
+
+fn run(arguments: &Arguments, interrupted: &std::sync::atomic::AtomicBool) -> Result<(), JobError> {
+    let job = Job::new(&arguments.picture)?;
+    let socket: UdpSocket = collector::bind(Ipv4Addr::UNSPECIFIED, arguments.port)?;
+    let port = socket.local_addr().map_err(CollectError::Socket)?.port();
+    let session = job.session();
+    let folder = arguments
+        .boot_dir
+        .clone()
+        .unwrap_or_else(|| job.out().join("boot"));
+    write_boot_blocks(&folder, &session, &route(arguments, port))?;
+    let (recipe, last) = (job.recipe().describe(), session.cores - 1);
+    eprintln!(
+        "boot blocks: {}, core-0.boot to core-{last}.boot, for an image with {recipe}",
+        folder.display()
+    );
+    eprintln!("waiting for {} cores on UDP port {port}", session.cores);
+    job.collect_elsewhere(&session, &socket, arguments.board, interrupted)
+}
+
+fn route(arguments: &Arguments, port: u16) -> Route {
+    let collector = arguments.host_address.octets();
+    match arguments.first_address {
+        Some(first) => Route {
+            collector,
+            port,
+            first_address: first.octets(),
+            shared: true,
+        },
+        None => Route {
+            collector,
+            ..Route::qemu(port)
+        },
+    }
+}
+
+fn write_boot_blocks(folder: &Path, session: &Session, route: &Route) -> Result<(), JobError> {
+    let failed = |cause| JobError::Out {
+        path: folder.to_owned(),
+        cause,
+    };
+    std::fs::create_dir_all(folder).map_err(failed)?;
+    for (core, block) in boot_blocks(session, route)?.iter().enumerate() {
+        std::fs::write(folder.join(format!("core-{core}.boot")), block).map_err(failed)?;
+    }
+    Ok(())
+}

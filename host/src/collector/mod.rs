@@ -20,28 +20,15 @@ mod socket;
 use std::net::SocketAddr;
 use std::time::Duration;
 
-use serde::Serialize;
 use wire::Farewell;
 
 use crate::film::Film;
+use crate::report::Packets;
 use sequence::Sequence;
 
 pub use progress::Progress;
 pub use run::{CollectError, collect};
 pub use socket::{BindError, bind};
-
-/// What became of all packets.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-pub struct Packets {
-    /// Taken from the socket, whatever they were.
-    pub received: u64,
-    /// Units that were in already.
-    pub duplicate: u64,
-    /// Not ours, or not sound.
-    pub rejected: u64,
-    /// Sent by a core, as its packet numbers say, and never received.
-    pub lost: u64,
-}
 
 /// What the collector knows of one core.
 #[derive(Clone, Debug, Default)]
@@ -64,8 +51,8 @@ pub struct CoreRecord {
     pub farewell: Option<Farewell>,
     /// What it said when it failed.
     pub last_words: Option<String>,
-    /// Whether it has ended, by its own or the fleet's word.
-    pub ended: bool,
+    /// How it ended before it was told to, by its own or the fleet's word.
+    pub ended: Option<String>,
 }
 
 /// How a collection ended.

@@ -12,9 +12,10 @@ use wire::{FromCore, MAX_PAYLOAD, Order, Pixels, Report, ToCore};
 use super::intake::{Rejection, judge};
 use super::leases::{Arrival, Leases};
 use super::progress::{Progress, State};
-use super::{Collection, CoreRecord, End, Packets};
+use super::{Collection, CoreRecord, End};
 use crate::film::{Film, FilmError};
 use crate::fleet::Fleet;
+use crate::report::Packets;
 use crate::session::Session;
 
 /// How long the socket is waited for at once, and so how often deaths and late leases are looked for.
@@ -240,7 +241,7 @@ impl<'a> Run<'a> {
             if self
                 .cores
                 .get(usize::from(core))
-                .is_some_and(|record| !record.ended)
+                .is_some_and(|record| record.ended.is_none())
             {
                 let how = self.fleet.how_ended(core);
                 self.bury(core, &how);
@@ -277,7 +278,7 @@ impl<'a> Run<'a> {
     }
 
     fn bury(&mut self, core: u16, how: &str) {
-        self.cores[usize::from(core)].ended = true;
+        self.cores[usize::from(core)].ended = Some(how.to_owned());
         self.progress
             .say(&format!("core {core}: {how}; its work goes to the others"));
         if let Work::Leased(leases) = &mut self.work {
@@ -303,7 +304,7 @@ impl<'a> Run<'a> {
     fn desertion(&self) -> Option<String> {
         let heard = self.cores.iter().filter_map(|core| core.heard).max();
         let since = self.now().saturating_sub(heard.unwrap_or_default());
-        let all_ended = self.cores.iter().all(|core| core.ended);
+        let all_ended = self.cores.iter().all(|core| core.ended.is_some());
         // Cores that somebody starts by hand may take any time before they are first heard.
         let silent = since >= SILENCE && (heard.is_some() || !self.fleet.is_elsewhere());
         if !all_ended && !silent {
@@ -368,13 +369,15 @@ impl<'a> Run<'a> {
 
     /// Tells the cores to stop and waits a little for their last reports. What else comes is counted but not added.
     fn close(&mut self) -> Result<(), CollectError> {
+        let mut gone = HashSet::new();
         let (end, mut next_stop) = (self.now() + FAREWELL_TIME, Duration::ZERO);
         let mut buffer = [0; MAX_PAYLOAD + 1];
         loop {
             let waiting: Vec<u16> = self
                 .cores
                 .iter()
-                .filter(|core| core.source.is_some() && core.farewell.is_none() && !core.ended)
+                .filter(|core| core.source.is_some() && core.farewell.is_none() && core.ended.is_none())
+                .filter(|core| !gone.contains(&core.core))
                 .map(|core| core.core)
                 .collect();
             if waiting.is_empty() || self.now() >= end {
@@ -387,11 +390,7 @@ impl<'a> Run<'a> {
             if let Some((len, source)) = self.receive(&mut buffer)? {
                 self.judge(&buffer[..len], source);
             } else {
-                for core in self.fleet.newly_ended() {
-                    if let Some(record) = self.cores.get_mut(usize::from(core)) {
-                        record.ended = true;
-                    }
-                }
+                gone.extend(self.fleet.newly_ended());
             }
         }
     }

@@ -71,6 +71,14 @@ impl Fleet {
         }
     }
 
+    /// The sum of the peak memory of the cores' own processes, in bytes.
+    pub fn peak_memory(&self) -> u64 {
+        match self {
+            Self::Qemu(fleet) => fleet.peak_memory(),
+            Self::Native(_) | Self::Elsewhere => 0,
+        }
+    }
+
     /// Whether somebody else starts the cores, at any time.
     pub fn is_elsewhere(&self) -> bool {
         matches!(self, Self::Elsewhere)

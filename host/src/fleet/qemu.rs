@@ -6,12 +6,15 @@ use std::io::{Read, Seek, SeekFrom};
 use std::os::unix::process::{CommandExt, ExitStatusExt};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
+use std::time::{Duration, Instant};
 
 use super::{FleetError, LAST_LINES};
-use crate::setup;
+use crate::{memory, setup};
 
 /// Where a board looks for its boot block.
 const BOOT_ADDRESS: u32 = 0x0040_0000;
+/// Time between two looks at the processes' memory, which nobody can ask for once they have ended.
+const MEASURE_EVERY: Duration = Duration::from_millis(250);
 /// How much of the end of a log is read for its last lines.
 const TAIL: u64 = 4096;
 
@@ -53,12 +56,14 @@ struct Guest {
     child: Child,
     log: PathBuf,
     ended: Option<ExitStatus>,
+    peak_memory: u64,
 }
 
 /// Cores as QEMU processes. Dropping it kills them, by their ids.
 #[derive(Debug)]
 pub struct QemuFleet {
     guests: Vec<Guest>,
+    measured: Instant,
 }
 
 impl QemuFleet {
@@ -72,6 +77,7 @@ impl QemuFleet {
     ) -> Result<Self, FleetError> {
         let mut fleet = Self {
             guests: Vec::with_capacity(boot_blocks.len()),
+            measured: Instant::now(),
         };
         let failed = |path: &Path| {
             let path = path.to_owned();
@@ -98,6 +104,7 @@ impl QemuFleet {
                 child,
                 log,
                 ended: None,
+                peak_memory: 0,
             });
             fs::write(&pid, format!("{id}\n")).map_err(failed(&pid))?;
         }
@@ -109,7 +116,24 @@ impl QemuFleet {
         self.guests.iter().map(|guest| guest.child.id()).collect()
     }
 
+    /// The sum of the processes' peak memory in bytes, as last seen.
+    pub(super) fn peak_memory(&self) -> u64 {
+        self.guests.iter().map(|guest| guest.peak_memory).sum()
+    }
+
+    fn measure(&mut self) {
+        if self.measured.elapsed() < MEASURE_EVERY {
+            return;
+        }
+        self.measured = Instant::now();
+        for guest in self.guests.iter_mut().filter(|guest| guest.ended.is_none()) {
+            let peak = memory::peak_of(&guest.child.id().to_string());
+            guest.peak_memory = guest.peak_memory.max(peak.unwrap_or_default());
+        }
+    }
+
     pub(super) fn newly_ended(&mut self) -> Vec<u16> {
+        self.measure();
         let mut ended = Vec::new();
         for (core, guest) in self.guests.iter_mut().enumerate() {
             // An error means that the process cannot be asked; silence will tell.
@@ -191,7 +215,6 @@ fn tail(path: &Path) -> std::io::Result<Vec<String>> {
 mod tests {
     use super::*;
     use std::os::unix::fs::PermissionsExt;
-    use std::time::{Duration, Instant};
 
     /// A program that takes QEMU's place.
     fn fake_qemu(folder: &Path, script: &str) -> PathBuf {

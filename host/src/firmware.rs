@@ -1,0 +1,400 @@
+//! Firmware images: built for a scene and a profile, then measured and checked.
+//!
+//! An image holds only what its scene needs (`TRACER_NEEDS`) and one profile (`TRACER_PROFILE`). All images are built in one
+//! target folder of their own, so that changing the scene compiles only the board's crate again, and so that the host's
+//! builds are not kept waiting; the finished image is then put beside it under a name that says what it is.
+
+use std::fmt;
+use std::fs::{self, File};
+use std::io;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use object::{Object, ObjectSection, ObjectSegment, ObjectSymbol, SectionFlags};
+use serde::Serialize;
+
+use crate::arithmetic::Arithmetic;
+use crate::scene::SceneNeeds;
+use crate::setup::Toolchain;
+
+/// Usable bytes of instruction memory: code, constants and first values.
+pub const ITCM_BUDGET: u64 = 0x7F00;
+/// Usable bytes of data memory: boot block, data and stacks.
+pub const DTCM_BUDGET: u64 = 0xF800;
+
+const TARGET: &str = "armv5te-none-eabi";
+const BOARD: &str = "versatilepb";
+/// Where data memory starts; instruction memory starts at 0.
+const DTCM: u64 = 0x0040_0000;
+const ITCM_END: u64 = 0x8000;
+const DTCM_END: u64 = DTCM + 0x1_0000;
+
+/// A board the firmware exists for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+pub enum Board {
+    /// ARMv5TE, an ARM946E-S on QEMU.
+    #[default]
+    Versatilepb,
+    /// Cortex-M3 on QEMU.
+    #[value(name = "mps2-an385")]
+    Mps2An385,
+}
+
+impl Board {
+    /// The name used by `--board` and in reports.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Versatilepb => BOARD,
+            Self::Mps2An385 => "mps2-an385",
+        }
+    }
+}
+
+/// What an image is to be built for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Recipe {
+    /// The arithmetic.
+    pub profile: Arithmetic,
+    /// The materials of the scene.
+    pub needs: SceneNeeds,
+    /// Whether paths end by Russian roulette.
+    pub roulette: bool,
+}
+
+impl Recipe {
+    /// The words of `TRACER_NEEDS`.
+    fn words(&self) -> String {
+        let mut words = self.needs.to_string();
+        if self.roulette {
+            words.push_str(if words.is_empty() { "roulette" } else { ",roulette" });
+        }
+        words
+    }
+
+    /// The recipe in words.
+    pub fn describe(&self) -> String {
+        format!("profile {} and {}", self.profile, self.words().replace(',', ", "))
+    }
+
+    /// The image's file name.
+    fn file_name(&self) -> String {
+        format!("{BOARD}-{}-{}.elf", self.profile, self.words().replace(',', "-"))
+    }
+}
+
+/// A finished image.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Image {
+    /// The ELF file.
+    pub elf: PathBuf,
+    /// How much memory it takes.
+    pub size: ImageSize,
+}
+
+/// Memory an image takes.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct ImageSize {
+    /// Instruction memory: code, constants and the first values of data.
+    pub itcm_bytes: u64,
+    /// Data memory without stacks: the boot block's room and data.
+    pub dtcm_bytes: u64,
+    /// All stacks together.
+    pub stack_bytes: u64,
+    /// Routines of a floating-point library, of which there must be none.
+    pub float_symbols: Vec<String>,
+}
+
+impl fmt::Display for ImageSize {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (code, data) = (self.itcm_bytes, self.dtcm_bytes + self.stack_bytes);
+        write!(
+            f,
+            "image: {code} of {ITCM_BUDGET} bytes of code memory, {data} of {DTCM_BUDGET} of data memory"
+        )
+    }
+}
+
+/// Why there is no image.
+#[derive(Debug, thiserror::Error)]
+pub enum FirmwareError {
+    /// A file could not be read or written.
+    #[error("firmware: {}: {cause}", path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        cause: io::Error,
+    },
+    /// The build failed.
+    #[error("firmware: the build for profile {profile} and needs `{needs}` failed:\n{output}")]
+    Build {
+        /// The profile.
+        profile: Arithmetic,
+        /// The needs.
+        needs: String,
+        /// What the compiler or the linker said.
+        output: String,
+    },
+    /// The ELF could not be read.
+    #[error("firmware: {} is no image of ours: {cause}", path.display())]
+    Elf {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        cause: String,
+    },
+    /// There is floating point in the image.
+    #[error(
+        "firmware: {} contains floating-point routines ({}); an f32 or f64 has got into code that runs on the core. \
+         Look for one in firmware/ and fixedmath/, and use fixedmath's types instead",
+        path.display(), symbols.join(", ")
+    )]
+    Float {
+        /// The image.
+        path: PathBuf,
+        /// The routines.
+        symbols: Vec<String>,
+    },
+}
+
+/// Builds the image for `recipe` and checks it.
+pub fn build(toolchain: &Toolchain, recipe: &Recipe) -> Result<Image, FirmwareError> {
+    let folder = target_folder();
+    let images = folder.join("images");
+    let failed = |path: &Path| {
+        let path = path.to_owned();
+        move |cause| FirmwareError::File { path, cause }
+    };
+    fs::create_dir_all(&images).map_err(failed(&images))?;
+    // Another build for another scene must not replace the ELF between the compiler and the copy.
+    let lock_path = images.join(".lock");
+    let lock = File::create(&lock_path).map_err(failed(&lock_path))?;
+    lock.lock().map_err(failed(&lock_path))?;
+    let mut command = cargo(toolchain, "build", recipe);
+    let output = command.output().map_err(failed(&toolchain.compiler.cargo))?;
+    if !output.status.success() {
+        return Err(FirmwareError::Build {
+            profile: recipe.profile,
+            needs: recipe.words(),
+            output: String::from_utf8_lossy(&output.stderr).trim_end().to_owned(),
+        });
+    }
+    let built = folder.join(TARGET).join("firmware").join(BOARD);
+    let elf = images.join(recipe.file_name());
+    fs::copy(&built, &elf).map_err(failed(&built))?;
+    drop(lock);
+    let bytes = fs::read(&elf).map_err(failed(&elf))?;
+    let size = measure(&bytes).map_err(|cause| FirmwareError::Elf {
+        path: elf.clone(),
+        cause,
+    })?;
+    if size.float_symbols.is_empty() {
+        Ok(Image { elf, size })
+    } else {
+        Err(FirmwareError::Float {
+            path: elf,
+            symbols: size.float_symbols,
+        })
+    }
+}
+
+/// A cargo command line on the board's crate: `build`, or `clippy`.
+pub fn cargo(toolchain: &Toolchain, verb: &str, recipe: &Recipe) -> Command {
+    let mut command = Command::new(&toolchain.compiler.cargo);
+    command
+        .current_dir(workspace())
+        .args([
+            verb,
+            "--locked",
+            "--profile",
+            "firmware",
+            "--package",
+            BOARD,
+            "--target",
+            TARGET,
+        ])
+        .args(["-Zbuild-std=core", "--target-dir"])
+        .arg(target_folder())
+        .env("RUSTC", &toolchain.compiler.rustc)
+        // What lets a stable compiler build its own library.
+        .env("RUSTC_BOOTSTRAP", "1")
+        .env("CARGO_TARGET_ARMV5TE_NONE_EABI_LINKER", &toolchain.linker)
+        .env("TRACER_PROFILE", recipe.profile.name())
+        .env("TRACER_NEEDS", recipe.words())
+        // Flags meant for the host's programs are not for a board's.
+        .env_remove("RUSTFLAGS")
+        .env_remove("CARGO_ENCODED_RUSTFLAGS")
+        .env_remove("RUSTUP_TOOLCHAIN");
+    command
+}
+
+/// The workspace this program was built from.
+pub fn workspace() -> &'static Path {
+    let host = Path::new(env!("CARGO_MANIFEST_DIR"));
+    host.parent().unwrap_or(host)
+}
+
+fn target_folder() -> PathBuf {
+    let target =
+        std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| workspace().join("target"), PathBuf::from);
+    target.join("firmware")
+}
+
+/// Measures an ELF file. What takes memory of a core is what is loaded there and what its sections reserve.
+pub fn measure(elf: &[u8]) -> Result<ImageSize, String> {
+    let file = object::File::parse(elf).map_err(|error| error.to_string())?;
+    let symbol = |name: &str| {
+        let found = file.symbol_by_name(name).map(|symbol| symbol.address());
+        found.ok_or_else(|| format!("it has no symbol {name}"))
+    };
+    let stacks = symbol("_stacks_low_end")?..symbol("_stacks_high_end")?;
+    let mut size = ImageSize {
+        stack_bytes: stacks.end.saturating_sub(stacks.start),
+        ..ImageSize::default()
+    };
+    size.dtcm_bytes = symbol("__boot_block_size")?;
+    for section in file.sections().filter(is_allocated) {
+        let address = section.address();
+        if (DTCM..DTCM_END).contains(&address) && !stacks.contains(&address) {
+            size.dtcm_bytes += section.size();
+        } else if address < ITCM_END {
+            size.itcm_bytes += section.size();
+        }
+    }
+    // The first values of .data lie in instruction memory until start-up copies them.
+    size.itcm_bytes += file
+        .segments()
+        .filter(|segment| (DTCM..DTCM_END).contains(&segment.address()))
+        .map(|segment| segment.file_range().1)
+        .sum::<u64>();
+    let names = file
+        .symbols()
+        .filter(|symbol| !symbol.is_undefined())
+        .filter_map(|symbol| symbol.name().ok());
+    size.float_symbols = names
+        .filter(|name| is_float_routine(name))
+        .map(str::to_owned)
+        .collect();
+    size.float_symbols.sort_unstable();
+    size.float_symbols.dedup();
+    Ok(size)
+}
+
+fn is_allocated<'d>(section: &impl ObjectSection<'d>) -> bool {
+    const SHF_ALLOC: u64 = 2;
+    matches!(section.flags(), SectionFlags::Elf { sh_flags } if sh_flags & SHF_ALLOC != 0)
+}
+
+/// Whether a symbol is a routine of a soft-float library, by the names of the ARM run-time ABI and of compilers' own libraries.
+fn is_float_routine(name: &str) -> bool {
+    if let Some(routine) = name.strip_prefix("__aeabi_") {
+        let compares = ["cd", "cf"].iter().any(|start| routine.starts_with(start));
+        let computes = routine.starts_with(['d', 'f', 'h']);
+        let converts = ["2f", "2d", "2h"].iter().any(|end| routine.contains(end));
+        return compares || computes || converts;
+    }
+    let Some(routine) = name.strip_prefix("__") else {
+        return false;
+    };
+    let routine = routine.trim_end_matches(['2', '3']);
+    ["hf", "sf", "df", "tf"]
+        .iter()
+        .any(|kind| routine.ends_with(kind))
+        || [
+            "fixsf",
+            "fixdf",
+            "fixunssf",
+            "fixunsdf",
+            "floatsi",
+            "floatdi",
+            "floatunsi",
+            "floatundi",
+        ]
+        .iter()
+        .any(|start| routine.starts_with(start))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn float_routines_are_told_from_integer_ones() {
+        for name in [
+            "__aeabi_fadd",
+            "__aeabi_dmul",
+            "__aeabi_cdcmpeq",
+            "__aeabi_cfrcmple",
+            "__aeabi_i2f",
+            "__aeabi_ul2d",
+            "__aeabi_d2iz",
+            "__aeabi_h2f",
+            "__addsf3",
+            "__muldf3",
+            "__ltsf2",
+            "__fixsfsi",
+            "__floatundidf",
+            "__extendsfdf2",
+        ] {
+            assert!(is_float_routine(name), "{name}");
+        }
+        for name in [
+            "__aeabi_idiv",
+            "__aeabi_uidivmod",
+            "__aeabi_ldivmod",
+            "__aeabi_lmul",
+            "__aeabi_llsl",
+            "__aeabi_memcpy4",
+            "__aeabi_unwind_cpp_pr0",
+            "__udivsi3",
+            "__muldi3",
+            "__clzsi2",
+            "__boot_block_size",
+            "main",
+            "_ZN4wire3defE",
+        ] {
+            assert!(!is_float_routine(name), "{name}");
+        }
+    }
+
+    #[test]
+    fn an_image_is_named_after_what_it_is_for() {
+        let needs = SceneNeeds {
+            diffuse: true,
+            mirror: false,
+            glass: true,
+        };
+        let recipe = Recipe {
+            profile: Arithmetic::Paper,
+            needs,
+            roulette: true,
+        };
+        assert_eq!(recipe.words(), "diffuse,glass,roulette");
+        assert_eq!(recipe.file_name(), "versatilepb-paper-diffuse-glass-roulette.elf");
+        let nothing = SceneNeeds {
+            diffuse: false,
+            mirror: false,
+            glass: false,
+        };
+        assert_eq!(
+            Recipe {
+                needs: nothing,
+                ..recipe
+            }
+            .words(),
+            "roulette"
+        );
+    }
+
+    #[test]
+    fn what_is_no_elf_is_refused() {
+        assert!(measure(b"no ELF at all").is_err());
+        // This test's own program is an ELF, but no image.
+        let own = fs::read(std::env::current_exe().expect("a program")).expect("its bytes");
+        assert!(
+            measure(&own)
+                .expect_err("not an image")
+                .contains("_stacks_low_end")
+        );
+    }
+}

@@ -1,0 +1,339 @@
+//! A render from start to end: what `cargo xtask render` and the collector do.
+//!
+//! Whatever can be known to fail is looked at before anything slow starts: the flags, the scene, the folder for the
+//! results, the reference file, the port, the programs that are needed. Then the image is built, the fleet started
+//! and the picture collected; then it is judged and written.
+
+pub mod options;
+mod results;
+
+use std::net::{Ipv4Addr, UdpSocket};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+use std::time::{Duration, Instant};
+
+use tracer::unit::Termination;
+use wire::Name;
+
+use crate::collector::{self, BindError, CollectError, Collection, End, Progress};
+use crate::compare::CompareError;
+use crate::file::WriteError;
+use crate::firmware::{self, Board, FirmwareError, Image, Recipe};
+use crate::fleet::{Fleet, FleetError, NativeFleet, QemuFleet};
+use crate::memory;
+use crate::openexr::{self, ReadError};
+use crate::picture::Estimate;
+use crate::scene::{CompiledScene, Scene, SceneError, compile};
+use crate::session::{Route, Session};
+use crate::setup::{self, Install, SetupError, Tools, Wanted};
+use options::{Backend, PictureOptions, Reference, RenderOptions};
+
+/// Why there is no complete picture.
+#[derive(Debug, thiserror::Error)]
+pub enum JobError {
+    /// The scene is unusable.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// The folder for the results is.
+    #[error("cannot write to the folder {}: {cause}; choose another with --out", path.display())]
+    Out {
+        /// The folder.
+        path: PathBuf,
+        /// What the system said.
+        cause: std::io::Error,
+    },
+    /// A board that is planned.
+    #[error("board {0} is not built yet: leave --board out, or say --board versatilepb")]
+    Board(&'static str),
+    /// The picture has more units than there are ids.
+    #[error("the picture has more than 2^32 work units: choose a smaller --size or --spp")]
+    TooManyUnits,
+    /// The scene does not fit a core.
+    #[error("{0}")]
+    TooLong(wire::boot::TooLong),
+    /// The reference file is unusable.
+    #[error("the reference: {0}")]
+    Reference(#[from] ReadError),
+    /// The two cannot be compared.
+    #[error(transparent)]
+    Compare(#[from] CompareError),
+    /// The port is.
+    #[error(transparent)]
+    Bind(#[from] BindError),
+    /// A program is missing.
+    #[error(transparent)]
+    Setup(#[from] SetupError),
+    /// The image could not be built.
+    #[error(transparent)]
+    Firmware(#[from] FirmwareError),
+    /// The cores could not be started.
+    #[error(transparent)]
+    Fleet(#[from] FleetError),
+    /// The collector failed.
+    #[error(transparent)]
+    Collect(#[from] CollectError),
+    /// A result could not be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+    /// The cores are gone.
+    #[error("{why}\n{kept}")]
+    Deserted {
+        /// Why, naming the cores.
+        why: String,
+        /// Where the partial picture is.
+        kept: String,
+    },
+    /// The user wanted it to end.
+    #[error("interrupted; {0}")]
+    Interrupted(String),
+}
+
+/// A job whose flags, scene and folder are sound.
+#[derive(Debug)]
+pub struct Job {
+    options: PictureOptions,
+    scene: Scene,
+    compiled: CompiledScene,
+    reference: Option<Estimate>,
+    out: PathBuf,
+}
+
+/// How the cores were run, for the report.
+#[derive(Clone, Copy, Debug)]
+struct Origin {
+    backend: &'static str,
+    board: Option<&'static str>,
+    /// The ticks count instructions: one is one virtual nanosecond.
+    counts_instructions: bool,
+}
+
+impl Job {
+    /// Checks everything that can be checked at once.
+    pub fn new(options: &PictureOptions) -> Result<Self, JobError> {
+        let scene = Scene::load(&options.scene)?;
+        let (width, height) = (options.size.width, options.size.height);
+        scene.check_frame(width, height)?;
+        options.plan().units().ok_or(JobError::TooManyUnits)?;
+        let out = options.out(&scene.name);
+        check_writable(&out)?;
+        let reference = match &options.reference {
+            Some(Reference::File(path)) => Some(read_reference(path, (width, height))?),
+            Some(Reference::None) | None => None,
+        };
+        let compiled = compile(&scene, width, height);
+        Ok(Self {
+            options: options.clone(),
+            scene,
+            compiled,
+            reference,
+            out,
+        })
+    }
+
+    /// The folder for the results.
+    pub fn out(&self) -> &Path {
+        &self.out
+    }
+
+    /// A new run of this job.
+    pub fn session(&self) -> Session {
+        Session {
+            id: Session::fresh_id(),
+            cores: self.options.cores,
+            scene: self.compiled.blob.clone(),
+            scene_id: self.compiled.id,
+            epoch: 0,
+            plan: self.options.plan(),
+            order: self.options.pixels.into(),
+            profile: Name::new(self.options.profile.name()),
+        }
+    }
+
+    /// The image that this job's cores need.
+    pub fn recipe(&self) -> Recipe {
+        Recipe {
+            profile: self.options.profile,
+            needs: self.compiled.needs,
+            roulette: self.options.termination.0 == Termination::Roulette,
+        }
+    }
+
+    /// Collects from cores that somebody else starts.
+    pub fn collect_elsewhere(
+        &self,
+        session: &Session,
+        socket: &UdpSocket,
+        board: Board,
+        interrupted: &AtomicBool,
+    ) -> Result<(), JobError> {
+        let origin = Origin {
+            backend: "elsewhere",
+            board: Some(board.name()),
+            counts_instructions: false,
+        };
+        self.collect(
+            session,
+            socket,
+            Fleet::Elsewhere,
+            origin,
+            Instant::now(),
+            interrupted,
+        )
+    }
+
+    fn collect(
+        &self,
+        session: &Session,
+        socket: &UdpSocket,
+        mut fleet: Fleet,
+        origin: Origin,
+        start: Instant,
+        interrupted: &AtomicBool,
+    ) -> Result<(), JobError> {
+        let mut progress = Progress::on_stderr();
+        let before = start.elapsed();
+        let collection = collector::collect(session, socket, &mut fleet, interrupted, &mut progress)?;
+        let wall = before + collection.elapsed;
+        let memory = memory::peak(fleet.peak_memory());
+        drop(fleet);
+        self.conclude(&collection, origin, wall, memory)
+    }
+
+    /// Judges and writes what was collected, and says how it went.
+    fn conclude(
+        &self,
+        collection: &Collection,
+        origin: Origin,
+        wall: Duration,
+        memory: Option<u64>,
+    ) -> Result<(), JobError> {
+        let results = results::Results {
+            job: self,
+            collection,
+            origin,
+            wall,
+            memory,
+        };
+        match &collection.end {
+            End::Complete => {
+                let verdict = results.judge()?;
+                let report = results.write(Some(&verdict))?;
+                println!("{}", results.summary(&report));
+                Ok(())
+            }
+            End::Interrupted => Err(JobError::Interrupted(results.keep_partial()?)),
+            End::Deserted(why) => Err(JobError::Deserted {
+                why: why.clone(),
+                kept: results.keep_partial()?,
+            }),
+        }
+    }
+}
+
+/// Renders a picture on cores of this host.
+pub fn render(options: &RenderOptions, interrupted: &AtomicBool) -> Result<(), JobError> {
+    if options.board != Board::Versatilepb {
+        return Err(JobError::Board(options.board.name()));
+    }
+    let job = Job::new(&options.picture)?;
+    let socket = collector::bind(Ipv4Addr::LOCALHOST, options.port.unwrap_or(0))?;
+    let port = socket.local_addr().map_err(CollectError::Socket)?.port();
+    let session = job.session();
+    let emulated = options.backend == Backend::Qemu;
+    let wanted = Wanted {
+        qemu: emulated,
+        firmware: emulated,
+        lints: false,
+    };
+    let install = if options.no_install {
+        Install::Forbidden
+    } else {
+        Install::Allowed
+    };
+    let tools = setup::ensure(wanted, install)?;
+    let image = job.build(&tools)?;
+    let route = if emulated {
+        Route::qemu(port)
+    } else {
+        Route::loopback(port)
+    };
+    let blocks = boot_blocks(&session, &route)?;
+    let start = Instant::now();
+    let (fleet, origin) = match (&tools.qemu, &image) {
+        (Some(qemu), Some(image)) => {
+            let fleet = QemuFleet::start(qemu, &image.elf, &blocks, &job.out.join("cores"))?;
+            let board = Some(options.board.name());
+            (
+                Fleet::Qemu(fleet),
+                Origin {
+                    backend: "qemu",
+                    board,
+                    counts_instructions: true,
+                },
+            )
+        }
+        _ => {
+            let fleet = NativeFleet::start(&blocks, options.picture.profile)?;
+            (
+                Fleet::Native(fleet),
+                Origin {
+                    backend: "native",
+                    board: None,
+                    counts_instructions: false,
+                },
+            )
+        }
+    };
+    job.collect(&session, &socket, fleet, origin, start, interrupted)
+}
+
+impl Job {
+    /// The image, where there is a toolchain for it.
+    fn build(&self, tools: &Tools) -> Result<Option<Image>, JobError> {
+        let Some(toolchain) = &tools.firmware else {
+            return Ok(None);
+        };
+        let recipe = self.recipe();
+        eprintln!(
+            "building the image for {} with {}",
+            self.scene.name,
+            recipe.describe()
+        );
+        let image = firmware::build(toolchain, &recipe)?;
+        eprintln!("{}", image.size);
+        Ok(Some(image))
+    }
+}
+
+/// The boot blocks of all cores.
+pub fn boot_blocks(session: &Session, route: &Route) -> Result<Vec<Vec<u8>>, JobError> {
+    let blocks = (0..session.cores).map(|core| session.boot_block(core, route));
+    blocks.collect::<Result<_, _>>().map_err(JobError::TooLong)
+}
+
+fn check_writable(folder: &Path) -> Result<(), JobError> {
+    let probe = || {
+        std::fs::create_dir_all(folder)?;
+        tempfile::tempfile_in(folder).map(|_| ())
+    };
+    probe().map_err(|cause| JobError::Out {
+        path: folder.to_owned(),
+        cause,
+    })
+}
+
+fn read_reference(path: &Path, size: (u16, u16)) -> Result<Estimate, JobError> {
+    let reference = openexr::read(path)?;
+    if reference.picture.size() == size {
+        Ok(reference)
+    } else {
+        Err(CompareError::Size {
+            picture: size,
+            reference: reference.picture.size(),
+        }
+        .into())
+    }
+}
+
+#[cfg(test)]
+mod tests;

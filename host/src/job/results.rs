@@ -1,0 +1,328 @@
+//! What a render leaves: pictures, report, and a summary for people.
+
+use std::fmt::Write as _;
+use std::path::Path;
+use std::time::Duration;
+
+use tracer::profile::{Paper, Precise};
+use tracer::unit::Termination;
+
+use super::options::{Pixels, Reference};
+use super::{Job, JobError, Origin};
+use crate::arithmetic::Arithmetic;
+use crate::collector::{Collection, End};
+use crate::compare::{Comparison, compare};
+use crate::picture::Estimate;
+use crate::reference::{self, cache};
+use crate::report::{self, Cost, LockstepError, Report};
+use crate::{difference, lockstep, openexr};
+
+/// Seed of the reference: any, as long as it stays the same.
+const REFERENCE_SEED: u64 = 0x5eed;
+/// Instructions in a tick of 24 MHz, where an instruction is a nanosecond.
+const INSTRUCTIONS_PER_TICK: f64 = 1000.0 / 24.0;
+
+/// What was collected, and all that a report says of it.
+pub(super) struct Results<'a> {
+    pub(super) job: &'a Job,
+    pub(super) collection: &'a Collection,
+    pub(super) origin: Origin,
+    pub(super) wall: Duration,
+    pub(super) memory: Option<u64>,
+}
+
+/// How wrong the picture is.
+pub(super) struct Verdict {
+    /// With what it was compared, and how that went; none without a reference.
+    against: Option<(Estimate, Comparison)>,
+    lockstep: Option<LockstepError>,
+}
+
+impl Results<'_> {
+    /// The collected picture, with as much noise as the reference has in as many samples.
+    fn image(&self, reference: Option<&Estimate>) -> Estimate {
+        let spp = self.job.options.spp;
+        // Cores send sums and no squares. The reference estimates the same pixels from the same distribution, so its
+        // noise, for as many samples, is the picture's. In the stochastic order a pixel's samples are not known before.
+        let evenly_sampled =
+            self.collection.end == End::Complete && self.job.options.pixels != Pixels::Stochastic;
+        let scale = reference
+            .and_then(|reference| reference.spp)
+            .map(|known| f64::from(known) / f64::from(spp));
+        let variance = match (reference.and_then(|reference| reference.variance.as_ref()), scale) {
+            (Some(known), Some(scale)) if evenly_sampled => Some(
+                known
+                    .iter()
+                    .map(|pixel| pixel.map(|variance| variance * scale))
+                    .collect(),
+            ),
+            _ => None,
+        };
+        Estimate {
+            picture: self.collection.film.picture(),
+            variance,
+            spp: Some(spp),
+        }
+    }
+
+    /// Compares with the reference and with the lockstep oracle.
+    pub(super) fn judge(&self) -> Result<Verdict, JobError> {
+        if self.job.options.reference == Some(Reference::None) {
+            return Ok(Verdict {
+                against: None,
+                lockstep: None,
+            });
+        }
+        let reference = match &self.job.reference {
+            Some(given) => given.clone(),
+            None => self.computed_reference()?,
+        };
+        let comparison = compare(&self.image(Some(&reference)), &reference)?;
+        Ok(Verdict {
+            against: Some((reference, comparison)),
+            lockstep: self.lockstep()?,
+        })
+    }
+
+    fn computed_reference(&self) -> Result<Estimate, JobError> {
+        let options = &self.job.options;
+        let job = reference::Job {
+            width: options.size.width,
+            height: options.size.height,
+            spp: options.reference_spp,
+            termination: match options.termination.0 {
+                Termination::Roulette => reference::Termination::Roulette,
+                Termination::Depth(depth) => reference::Termination::Depth(depth),
+            },
+            seed: REFERENCE_SEED,
+        };
+        eprintln!("comparing with double precision at {} samples per pixel", job.spp);
+        let (estimate, _) = cache::reference(Path::new("out/.references"), &self.job.scene, &job, |_| {})?;
+        Ok(estimate)
+    }
+
+    /// How far arithmetic alone took the picture. Not for the stochastic order, whose samples are others each time.
+    fn lockstep(&self) -> Result<Option<LockstepError>, JobError> {
+        let options = &self.job.options;
+        if options.pixels == Pixels::Stochastic {
+            return Ok(None);
+        }
+        let (blob, plan) = (&self.job.compiled.blob, options.plan());
+        let rendered = match options.profile {
+            Arithmetic::Paper => lockstep::render::<Paper>(blob, &plan, |_| {}),
+            Arithmetic::Precise => lockstep::render::<Precise>(blob, &plan, |_| {}),
+        };
+        // The compiler in this very program wrote the blob.
+        let Ok(oracle) = rendered else { return Ok(None) };
+        let exact = Estimate {
+            variance: None,
+            ..oracle
+        };
+        let image = self.image(None);
+        let comparison = compare(&image, &exact)?;
+        let pixels = image.picture.pixels().iter().zip(exact.picture.pixels());
+        let differences = pixels.filter_map(|(image, exact)| Some((image.as_ref()?, exact.as_ref()?)));
+        let max_abs = differences
+            .flat_map(|(image, exact)| {
+                image
+                    .iter()
+                    .zip(exact)
+                    .map(|(image, exact)| (image - exact).abs())
+            })
+            .fold(0.0, f64::max);
+        Ok(Some(LockstepError {
+            bias: comparison.bias,
+            rmse: comparison.rmse,
+            max_abs,
+        }))
+    }
+
+    /// Writes pictures and report.
+    pub(super) fn write(&self, verdict: Option<&Verdict>) -> Result<Report, JobError> {
+        let out = &self.job.out;
+        let against = verdict.and_then(|verdict| verdict.against.as_ref());
+        let image = self.image(against.map(|(reference, _)| reference));
+        image.picture.write_png(&out.join("image.png"))?;
+        openexr::write(&out.join("image.exr"), &image)?;
+        if let Some((reference, comparison)) = against {
+            openexr::write(&out.join("reference.exr"), reference)?;
+            let title = format!("{} {}", self.job.scene.name, self.job.options.profile);
+            let path = out.join("difference.png");
+            difference::write(&path, &title, &image.picture, &reference.picture, comparison)?;
+        }
+        let report = self.report(&image, verdict);
+        report.write(&out.join("report.json"))?;
+        Ok(report)
+    }
+
+    /// Writes what there is of a picture, and says so.
+    pub(super) fn keep_partial(&self) -> Result<String, JobError> {
+        if self.collection.film.samples() == 0 {
+            return Ok("not a single unit came, so there is no picture".to_owned());
+        }
+        self.write(None)?;
+        Ok(format!(
+            "the picture as far as it came is {}",
+            self.job.out.join("image.png").display()
+        ))
+    }
+
+    fn report(&self, image: &Estimate, verdict: Option<&Verdict>) -> Report {
+        let options = &self.job.options;
+        let plan = options.plan();
+        let error = match verdict.and_then(|verdict| verdict.against.as_ref()) {
+            Some((reference, comparison)) => {
+                let noise_known = image.variance.is_some() && reference.variance.is_some();
+                report::Error::new(comparison, reference.spp, noise_known)
+            }
+            None => report::Error {
+                mean: image.picture.mean(),
+                ..report::Error::default()
+            },
+        };
+        Report {
+            scene: self.job.scene.name.clone(),
+            size: [plan.width, plan.height],
+            spp: plan.spp,
+            cores: options.cores.into(),
+            board: self.origin.board.map(str::to_owned),
+            backend: self.origin.backend.to_owned(),
+            profile: options.profile.name().to_owned(),
+            termination: options.termination.to_string(),
+            pixels: options.pixels.name().to_owned(),
+            seed: plan.seed,
+            epsilon: f64::from(plan.epsilon) / 65536.0,
+            image_sha256: self.collection.film.sha256(),
+            samples: self.collection.film.samples(),
+            missing_pixels: self.collection.film.missing(),
+            complete: self.collection.end == End::Complete,
+            wall_seconds: self.wall.as_secs_f64(),
+            peak_memory_bytes: self.memory,
+            packets: self.collection.packets,
+            cost: self.cost(),
+            error,
+            lockstep_error: verdict.and_then(|verdict| verdict.lockstep),
+            per_core: self.collection.cores.iter().map(|core| self.core(core)).collect(),
+        }
+    }
+
+    fn cost(&self) -> Cost {
+        let samples = self.collection.film.samples();
+        let per_sample = |total: f64| (samples > 0).then(|| total / samples as f64);
+        let instructions = self.collection.ticks() as f64 * INSTRUCTIONS_PER_TICK;
+        Cost {
+            instructions_per_sample: per_sample(instructions).filter(|_| self.origin.counts_instructions),
+            cycles_per_sample: None,
+            rays_per_sample: per_sample(self.collection.rays() as f64),
+        }
+    }
+
+    fn core(&self, record: &crate::collector::CoreRecord) -> report::Core {
+        let stack = record.farewell.filter(|farewell| farewell.stack_size > 0);
+        report::Core {
+            core: record.core,
+            units: record.units,
+            ticks: self.origin.counts_instructions.then_some(record.ticks),
+            stack_bytes: stack.map(|farewell| farewell.stack_used),
+            stack_size: stack.map(|farewell| farewell.stack_size),
+            fault: record.last_words.clone().or_else(|| record.ended.clone()),
+        }
+    }
+
+    /// A few lines for people.
+    pub(super) fn summary(&self, report: &Report) -> String {
+        let mut text = format!(
+            "picture  {} ({}x{}, {} samples per pixel, {} cores)\n",
+            self.job.out.join("image.png").display(),
+            report.size[0],
+            report.size[1],
+            report.spp,
+            report.cores
+        );
+        let mut line = |name: &str, said: String| {
+            // Writing to a string does not fail.
+            let _ = writeln!(text, "{name:8} {said}");
+        };
+        line("mean", means(report));
+        let error = &report.error;
+        if let (Some(bias), Some(rmse)) = (error.bias, error.rmse) {
+            let noise = error.bias_standard_error.unwrap_or_default();
+            line(
+                "bias",
+                format!(
+                    "{:+.3} % (standard error {:.3} %), rmse {rmse:.5}",
+                    100.0 * bias,
+                    100.0 * noise
+                ),
+            );
+        }
+        if let Some(tiles) = &error.tiles {
+            let (failed, tested, bound) = (tiles.failed, tiles.tested, tiles.threshold_z);
+            let worst = tiles
+                .max_z
+                .map_or_else(|| "unbounded".to_owned(), |z| format!("{z:+.2}"));
+            line(
+                "tiles",
+                format!("{failed} of {tested} tests fail (worst z {worst}, bound {bound:.2})"),
+            );
+        }
+        if let Some(lockstep) = &report.lockstep_error {
+            let bias = lockstep
+                .bias
+                .map_or_else(|| "-".to_owned(), |bias| format!("{:+.4} %", 100.0 * bias));
+            line(
+                "lockstep",
+                format!(
+                    "bias {bias}, rms difference {:.5}: arithmetic alone",
+                    lockstep.rmse
+                ),
+            );
+        }
+        let count = |value: Option<f64>| {
+            value.map_or_else(|| "not counted".to_owned(), |value| format!("{value:.1}"))
+        };
+        let cost = &report.cost;
+        line(
+            "cost",
+            format!(
+                "{} instructions and {} rays a sample",
+                count(cost.instructions_per_sample),
+                count(cost.rays_per_sample)
+            ),
+        );
+        if let Some((used, size)) = self.collection.stack() {
+            line("stack", format!("at most {used} of {size} bytes used"));
+        }
+        let packets = &report.packets;
+        line(
+            "packets",
+            format!(
+                "{} received, {} duplicate, {} rejected, {} lost",
+                packets.received, packets.duplicate, packets.rejected, packets.lost
+            ),
+        );
+        let memory = report
+            .peak_memory_bytes
+            .map_or_else(|| "-".to_owned(), |bytes| format!("{} MiB", bytes >> 20));
+        line(
+            "time",
+            format!(
+                "{:.1} s from the first core's start to the last unit; peak memory {memory}",
+                report.wall_seconds
+            ),
+        );
+        line("sha256", report.image_sha256.clone());
+        text.trim_end().to_owned()
+    }
+}
+
+fn means(report: &Report) -> String {
+    let of = |mean: Option<[f64; 3]>| {
+        mean.map(|[r, g, b]| format!("{:.4} (red {r:.4}, green {g:.4}, blue {b:.4})", (r + g + b) / 3.0))
+    };
+    let image = of(report.error.mean).unwrap_or_else(|| "-".to_owned());
+    match of(report.error.reference_mean) {
+        Some(reference) => format!("{image}; reference {reference}"),
+        None => image,
+    }
+}

@@ -1,0 +1,49 @@
+//! `cargo xtask qemu-run`
+
+use std::path::PathBuf;
+use std::process::{Command, ExitCode};
+
+use anyhow::Context;
+use host::fleet::command_line;
+use host::setup::{self, Wanted};
+
+use crate::SetUp;
+
+/// Arguments of `qemu-run`.
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// The image
+    elf: PathBuf,
+    /// Boot block for the core, as the collector writes it
+    #[arg(long, value_name = "FILE")]
+    boot: Option<PathBuf>,
+    #[command(flatten)]
+    set_up: SetUp,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
+    for file in [Some(&arguments.elf), arguments.boot.as_ref()]
+        .into_iter()
+        .flatten()
+    {
+        std::fs::File::open(file).with_context(|| format!("cannot read {}", file.display()))?;
+    }
+    let tools = setup::ensure(
+        Wanted {
+            qemu: true,
+            ..Wanted::default()
+        },
+        arguments.set_up.install(),
+    )?;
+    let qemu = tools.qemu.context("set-up gave no QEMU")?;
+    let mut command = Command::new(&qemu);
+    command.args(command_line(&arguments.elf, arguments.boot.as_deref()));
+    let status = command
+        .status()
+        .with_context(|| format!("cannot start {}", qemu.display()))?;
+    let code = status
+        .code()
+        .with_context(|| format!("QEMU did not end by itself: {status}"))?;
+    // Exit codes have eight bits.
+    Ok(ExitCode::from(code as u8))
+}

@@ -1,0 +1,26 @@
+//! `cargo xtask render`
+
+use std::process::ExitCode;
+
+use host::interrupt;
+use host::job::options::RenderOptions;
+use host::job::{self, JobError};
+
+/// Arguments of `render`.
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    options: RenderOptions,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
+    let interrupted = interrupt::watch()?;
+    match job::render(&arguments.options, interrupted) {
+        Ok(()) => Ok(ExitCode::SUCCESS),
+        Err(error @ JobError::Interrupted(_)) => {
+            eprintln!("error: {error}");
+            Ok(ExitCode::from(interrupt::EXIT_CODE))
+        }
+        Err(error) => Err(error.into()),
+    }
+}

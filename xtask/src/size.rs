@@ -1,0 +1,111 @@
+//! `cargo xtask size`
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use anyhow::{Context, ensure};
+use host::arithmetic::Arithmetic;
+use host::firmware::{self, Board, DTCM_BUDGET, ITCM_BUDGET, ImageSize, Recipe};
+use host::scene::{Scene, compile};
+use host::setup::{self, Toolchain, Wanted};
+use serde::Serialize;
+
+use crate::SetUp;
+
+/// Arguments of `size`.
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// The scene that the images are for
+    #[arg(default_value = "scenes/cornell.toml")]
+    scene: PathBuf,
+    /// Write the table as JSON, too
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+    #[command(flatten)]
+    set_up: SetUp,
+}
+
+/// One image.
+#[derive(Serialize)]
+pub(crate) struct Row {
+    board: &'static str,
+    scene: String,
+    profile: &'static str,
+    #[serde(flatten)]
+    size: ImageSize,
+}
+
+impl Row {
+    fn data(&self) -> u64 {
+        self.size.dtcm_bytes + self.size.stack_bytes
+    }
+}
+
+pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
+    let scene = Scene::load(&arguments.scene)?;
+    let tools = setup::ensure(
+        Wanted {
+            firmware: true,
+            ..Wanted::default()
+        },
+        arguments.set_up.install(),
+    )?;
+    let rows = measure(&tools.firmware.context("set-up gave no compiler")?, &scene)?;
+    println!("{}", table(&rows));
+    if let Some(path) = &arguments.json {
+        let json = serde_json::to_string_pretty(&rows)?;
+        std::fs::write(path, json + "\n").with_context(|| format!("cannot write {}", path.display()))?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Builds and measures the images for a scene; fails where one is over the budget.
+pub(crate) fn measure(toolchain: &Toolchain, scene: &Scene) -> anyhow::Result<Vec<Row>> {
+    // The image does not depend on the size of the picture.
+    let needs = compile(scene, 4, 3).needs;
+    let row = |profile: Arithmetic| {
+        let image = firmware::build(
+            toolchain,
+            &Recipe {
+                profile,
+                needs,
+                roulette: true,
+            },
+        )?;
+        let board = Board::Versatilepb.name();
+        let row = Row {
+            board,
+            scene: scene.name.clone(),
+            profile: profile.name(),
+            size: image.size,
+        };
+        ensure!(
+            row.size.itcm_bytes <= ITCM_BUDGET && row.data() <= DTCM_BUDGET,
+            "an image is over the budget:\n{}",
+            table(&[row])
+        );
+        Ok(row)
+    };
+    Arithmetic::ALL.into_iter().map(row).collect()
+}
+
+/// The rows for people.
+pub(crate) fn table(rows: &[Row]) -> String {
+    let mut lines = vec![format!(
+        "{:12} {:10} {:8} {:>14} {:>22}",
+        "board", "scene", "profile", "code memory", "data memory (stack)"
+    )];
+    lines.extend(rows.iter().map(|row| {
+        let stack = row.size.stack_bytes;
+        format!(
+            "{:12} {:10} {:8} {:>14} {:>22}",
+            row.board,
+            row.scene,
+            row.profile,
+            row.size.itcm_bytes,
+            format!("{} ({stack})", row.data())
+        )
+    }));
+    lines.push(format!("{:32} {ITCM_BUDGET:>14} {DTCM_BUDGET:>22}", "budget"));
+    lines.join("\n")
+}

@@ -1,0 +1,119 @@
+//! `cargo xtask test`
+
+use std::path::Path;
+use std::process::{Command, ExitCode, Stdio};
+use std::time::{Duration, Instant};
+
+use anyhow::{Context, bail};
+use host::arithmetic::Arithmetic;
+use host::firmware::{self, Recipe};
+use host::scene::{Scene, compile};
+use host::setup::{self, Toolchain, Wanted};
+
+use crate::{SetUp, size};
+
+/// Arguments of `test`.
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    set_up: SetUp,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
+    let start = Instant::now();
+    let wanted = Wanted {
+        qemu: true,
+        firmware: true,
+        lints: true,
+    };
+    let tools = step("set-up", || {
+        Ok(setup::ensure(wanted, arguments.set_up.install())?)
+    })?;
+    let toolchain = tools.firmware.context("set-up gave no compiler")?;
+    let scene = Scene::load(&firmware::workspace().join("scenes/cornell.toml"))?;
+    step("format", || succeed(cargo(&["fmt", "--all", "--check"])))?;
+    step("lints", || {
+        succeed(cargo(&["clippy", "--all-targets", "--", "--deny", "warnings"]))
+    })?;
+    lint_firmware(&toolchain, &scene)?;
+    step("tests", || {
+        succeed(cargo(&[
+            "test",
+            "--workspace",
+            "--exclude",
+            "versatilepb",
+            "--exclude",
+            "whole-system",
+        ]))
+    })?;
+    let rows = step("firmware", || size::measure(&toolchain, &scene))?;
+    println!("{}", size::table(&rows));
+    step("whole system", || {
+        succeed(cargo(&["test", "--package", "whole-system"]))
+    })?;
+    step("documentation", || {
+        let mut command = cargo(&["doc", "--no-deps"]);
+        command.env("RUSTDOCFLAGS", "--deny warnings");
+        succeed(command)
+    })?;
+    println!("all passed in {}", seconds(start.elapsed()));
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Lints the board's crate with the compiler that builds it, if that has a clippy.
+fn lint_firmware(toolchain: &Toolchain, scene: &Scene) -> anyhow::Result<()> {
+    if !toolchain.compiler.has_clippy {
+        println!(
+            "firmware lints: skipped, as {} has no clippy beside it",
+            toolchain.compiler.rustc.display()
+        );
+        return Ok(());
+    }
+    let recipe = Recipe {
+        profile: Arithmetic::Precise,
+        needs: compile(scene, 4, 3).needs,
+        roulette: true,
+    };
+    let mut command = firmware::cargo(toolchain, "clippy", &recipe);
+    command.args(["--", "--deny", "warnings"]);
+    step("firmware lints", || succeed(command))
+}
+
+fn cargo(arguments: &[&str]) -> Command {
+    // The cargo that runs this program, in the toolchain that was chosen for it.
+    let program = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let mut command = Command::new(program);
+    command.args(arguments).current_dir(firmware::workspace());
+    command
+}
+
+/// Names a step, does it, and says how long it took.
+fn step<T>(name: &str, action: impl FnOnce() -> anyhow::Result<T>) -> anyhow::Result<T> {
+    println!("{name} ...");
+    let start = Instant::now();
+    let done = action().with_context(|| format!("{name} failed"))?;
+    println!("{name}: passed in {}", seconds(start.elapsed()));
+    Ok(done)
+}
+
+/// Runs a command; what it says is shown only if it fails.
+fn succeed(mut command: Command) -> anyhow::Result<()> {
+    let program = Path::new(command.get_program()).display().to_string();
+    let output = command
+        .stdin(Stdio::null())
+        .output()
+        .with_context(|| format!("cannot start {program}"))?;
+    if !output.status.success() {
+        let said = [output.stdout, output.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
+        bail!(
+            "{command:?} ended with {}:\n{}",
+            output.status,
+            said.concat().trim_end()
+        );
+    }
+    Ok(())
+}
+
+fn seconds(time: Duration) -> String {
+    format!("{:.1} s", time.as_secs_f64())
+}
