@@ -1,0 +1,16 @@
+//! An image that must not link: its constants do not fit code memory.
+#![no_std]
+#![no_main]
+
+use core::hint::black_box;
+
+use versatilepb::semihosting::{Exit, exit};
+
+/// All of code memory, so that nothing is left for code.
+static TOO_MUCH: [u32; 8 * 1024] = [7; 8 * 1024];
+
+#[aarch32_rt::entry]
+fn start() -> ! {
+    black_box(&TOO_MUCH);
+    exit(Exit::Done)
+}

@@ -1,0 +1,18 @@
+//! An image that must not link: its data and its stacks do not fit data memory together.
+//!
+//! The linker places both without a complaint of its own; a test builds this and expects `memory.x` to refuse it.
+#![no_std]
+#![no_main]
+
+use core::hint::black_box;
+
+use versatilepb::semihosting::{Exit, exit};
+
+/// Words that are may change, and so take up data memory.
+static mut TOO_MUCH: [u32; 5 * 1024] = [0; 5 * 1024];
+
+#[aarch32_rt::entry]
+fn start() -> ! {
+    black_box(&raw mut TOO_MUCH);
+    exit(Exit::Done)
+}

@@ -1,0 +1,12 @@
+//! A core that runs into something that is no instruction. Its last words must say so, and its exit code be that of an exception.
+#![no_std]
+#![no_main]
+
+use versatilepb::semihosting::{Exit, exit};
+
+#[aarch32_rt::entry]
+fn start() -> ! {
+    // SAFETY: the instruction is defined to be undefined; the handler never returns.
+    unsafe { core::arch::asm!("udf #0") };
+    exit(Exit::Done)
+}
