@@ -34,8 +34,15 @@ pub struct SceneNeeds {
 impl fmt::Display for SceneNeeds {
     /// The words that the firmware's build script reads, comma-separated.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let words = [(self.diffuse, "diffuse"), (self.mirror, "mirror"), (self.glass, "glass")];
-        let needed: Vec<&str> = words.into_iter().filter_map(|(needed, word)| needed.then_some(word)).collect();
+        let words = [
+            (self.diffuse, "diffuse"),
+            (self.mirror, "mirror"),
+            (self.glass, "glass"),
+        ];
+        let needed: Vec<&str> = words
+            .into_iter()
+            .filter_map(|(needed, word)| needed.then_some(word))
+            .collect();
         f.write_str(&needed.join(","))
     }
 }
@@ -43,7 +50,8 @@ impl fmt::Display for SceneNeeds {
 /// Compiles a checked scene for a picture of `width` by `height` pixels.
 pub fn compile(scene: &Scene, width: u16, height: u16) -> CompiledScene {
     // Hollow spheres go first: most rays end on one, and a near hit early spares roots later.
-    let (hollow, solid): (Vec<&Sphere>, Vec<&Sphere>) = scene.spheres.iter().partition(|sphere| sphere.hollow);
+    let (hollow, solid): (Vec<&Sphere>, Vec<&Sphere>) =
+        scene.spheres.iter().partition(|sphere| sphere.hollow);
     let header = Header {
         spheres: scene.spheres.len() as u16,
         hollow: hollow.len() as u16,
@@ -59,7 +67,11 @@ pub fn compile(scene: &Scene, width: u16, height: u16) -> CompiledScene {
         mirror: has(|material| matches!(material, Material::Mirror(_))),
         glass: has(|material| matches!(material, Material::Glass { .. })),
     };
-    CompiledScene { id: wire::crc32(&blob), blob, needs }
+    CompiledScene {
+        id: wire::crc32(&blob),
+        blob,
+        needs,
+    }
 }
 
 fn camera(camera: &Camera, width: u16, height: u16) -> CameraRecord {
@@ -91,7 +103,10 @@ fn film_scale(forward: [f64; 3], right: [f64; 3], up: [f64; 3], width: u16, heig
     // A tent reaches a sub-pixel beyond the last one's centre, a quarter of a pixel past the film's edge.
     let (x, y) = (0.5 + 0.5 / f64::from(width), 0.5 + 0.5 / f64::from(height));
     let sums = (0..3).map(|i| forward[i].abs() + right[i].abs() * x + up[i].abs() * y);
-    let largest = sums.chain(right.map(f64::abs)).chain(up.map(f64::abs)).fold(0.0, f64::max);
+    let largest = sums
+        .chain(right.map(f64::abs))
+        .chain(up.map(f64::abs))
+        .fold(0.0, f64::max);
     1.99 / largest
 }
 
@@ -142,7 +157,11 @@ fn q0_32(value: f64) -> u32 {
 }
 
 fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
 }
 
 fn normalised(v: [f64; 3]) -> [f64; 3] {
@@ -163,14 +182,18 @@ mod tests {
     fn cornell_needs_all_three_materials_and_decodes() {
         let compiled = compile(&cornell(), 256, 192);
         assert_eq!(compiled.needs.to_string(), "diffuse,mirror,glass");
-        let scene = tracer::scene::Scene::<tracer::numbers::Mixed>::decode::<tracer::scene::All>(&compiled.blob).unwrap();
+        let scene =
+            tracer::scene::Scene::<tracer::numbers::Mixed>::decode::<tracer::scene::All>(&compiled.blob)
+                .unwrap();
         assert_eq!((scene.hollow().len(), scene.solid().len()), (6, 3));
     }
 
     #[test]
     fn a_box_without_balls_needs_only_diffuse() {
         let mut scene = cornell();
-        scene.spheres.retain(|sphere| matches!(sphere.material, Material::Diffuse(_)));
+        scene
+            .spheres
+            .retain(|sphere| matches!(sphere.material, Material::Diffuse(_)));
         assert_eq!(compile(&scene, 8, 8).needs.to_string(), "diffuse");
     }
 
@@ -182,7 +205,10 @@ mod tests {
             let record = record(&sphere);
             let found = f64::from(record.reciprocal) * 2f64.powi(i32::from(record.shift) - 44);
             let exact = 65536.0 / f64::from(record.radius);
-            assert!((found / exact - 1.0).abs() < 2e-9, "{radius}: {found} for {exact}");
+            assert!(
+                (found / exact - 1.0).abs() < 2e-9,
+                "{radius}: {found} for {exact}"
+            );
         }
     }
 

@@ -76,8 +76,11 @@ pub enum Material {
 pub const FORMAT: i64 = 1;
 /// More spheres than this do not fit a core's data memory beside its stack.
 pub const MAX_SPHERES: usize = 64;
-/// The largest whole number a signed 16:16 holds; every length in a scene stays below it.
+/// The largest whole number a signed 16:16 holds; every coordinate and radius stays below it.
 pub const MAX_LENGTH: f64 = 32767.0;
+/// How far from a sphere's centre a ray may start, at most: a third of the 16:16 range, so that no sum of distances and
+/// projections leaves it and no sum of squares leaves 32:32 (see `tracer::numbers::Numbers`).
+pub const REACH: f64 = 10922.0;
 /// Smaller spheres leave too few of 16 fraction bits for 1/r and r².
 pub const MIN_RADIUS: f64 = 1.0 / 256.0;
 /// Brighter lights could overflow a work unit's 24:16 sums.
@@ -178,7 +181,7 @@ impl Scene {
             validate::Blocked::TooFar(sphere, ()) => {
                 let name = &sphere.name;
                 format!(
-                    "the {corner} ray starts beyond the 16:16 range of sphere \"{name}\"; choose a narrower shape"
+                    "the {corner} ray starts beyond the tracer's reach of sphere \"{name}\"; choose a narrower shape"
                 )
             }
         };

@@ -1,7 +1,7 @@
 //! How the parts of a scene fit together: names, light, extent, and free space in front of the camera.
 
 use super::parse::{Draft, Source};
-use super::{Camera, MAX_LENGTH, Sphere};
+use super::{Camera, REACH, Sphere};
 
 /// Notes every fault of `draft`.
 pub(super) fn validate(draft: &Draft, source: &mut Source<'_>) {
@@ -43,22 +43,50 @@ fn something_shines(draft: &Draft, source: &mut Source<'_>) {
     }
 }
 
-/// A ray from any sphere or from the camera to the far side of any sphere must be representable.
+/// From wherever a ray can start, every centre must be within the tracer's reach. (`camera_is_in_free_space` looks after
+/// the first ray.)
 fn distances_fit(draft: &Draft, source: &mut Source<'_>) {
-    for (index, a) in draft.spheres.iter().enumerate() {
-        let farthest = draft.spheres[..index]
+    let spheres: Vec<&Sphere> = draft.spheres.iter().map(|placed| &placed.sphere).collect();
+    let region = reachable(&spheres);
+    for placed in &draft.spheres {
+        let sphere = &placed.sphere;
+        // Within a hollow sphere nothing is further than its radius from its centre; the box around it is coarser.
+        let from_rooms = spheres
             .iter()
-            .map(|b| (reach(&a.sphere, &b.sphere), b))
-            .max_by(|(left, _), (right, _)| left.total_cmp(right));
-        if let Some((extent, b)) = farthest
-            && extent >= MAX_LENGTH
-        {
-            let (one, other, line) = (&a.sphere.name, &b.sphere.name, source.line(b.at));
-            let cause = format!("from \"{one}\" across \"{other}\" (line {line}) it is {extent:.0}");
-            let message = format!("{cause}, beyond the 16:16 range ({MAX_LENGTH}); make the scene smaller");
-            source.fault(a.at, message);
+            .filter(|room| room.hollow)
+            .map(|room| length(sub(sphere.centre, room.centre)) + room.radius);
+        let farthest = from_rooms.fold(farthest_corner(region, sphere.centre), f64::min);
+        if farthest >= REACH {
+            let name = &sphere.name;
+            let cause = format!("a ray may start {farthest:.0} from the centre of \"{name}\"");
+            let message = format!("{cause}, beyond the tracer's reach ({REACH}); make the scene smaller");
+            source.fault(placed.at, message);
         }
     }
+}
+
+/// The box, as lowest and highest corner, that holds every surface a ray can meet: what all hollow spheres have in
+/// common, or everything there is.
+fn reachable(spheres: &[&Sphere]) -> [[f64; 3]; 2] {
+    let hollow = spheres.iter().any(|sphere| sphere.hollow);
+    let mut boxes = spheres
+        .iter()
+        .filter(|sphere| sphere.hollow == hollow)
+        .map(|sphere| [-1.0, 1.0].map(|side| sphere.centre.map(|c| c + side * sphere.radius)));
+    let first = boxes.next().unwrap_or_default();
+    boxes.fold(first, |[low, high], [other_low, other_high]| {
+        let lowest = [0, 1, 2].map(|i| low[i].min(other_low[i]));
+        let highest = [0, 1, 2].map(|i| high[i].max(other_high[i]));
+        let common = [
+            [0, 1, 2].map(|i| low[i].max(other_low[i])),
+            [0, 1, 2].map(|i| high[i].min(other_high[i])),
+        ];
+        if hollow { common } else { [lowest, highest] }
+    })
+}
+
+fn farthest_corner([low, high]: [[f64; 3]; 2], from: [f64; 3]) -> f64 {
+    length([0, 1, 2].map(|i| (from[i] - low[i]).abs().max((from[i] - high[i]).abs())))
 }
 
 fn directions_differ(draft: &Draft, source: &mut Source<'_>) {
@@ -82,7 +110,7 @@ fn camera_is_in_free_space(draft: &Draft, source: &mut Source<'_>) {
                 source.line(at)
             ),
             Blocked::TooFar(sphere, at) => format!(
-                "the {corner} ray starts too far from sphere \"{}\" (line {}) for 16:16; move the camera nearer",
+                "the {corner} ray starts too far from the centre of sphere \"{}\" (line {}), beyond the tracer's reach ({REACH}); move the camera nearer",
                 sphere.name,
                 source.line(at)
             ),
@@ -109,7 +137,7 @@ pub(super) fn first_blocked_ray<'s, T>(
         .find_map(|(corner, start)| {
             spheres.clone().find_map(|(sphere, tag)| {
                 let distance = length(sub(start, sphere.centre));
-                if distance + sphere.radius >= MAX_LENGTH {
+                if distance >= REACH {
                     Some((corner, Blocked::TooFar(sphere, tag)))
                 } else if (distance < sphere.radius) != sphere.hollow {
                     Some((corner, Blocked::Inside(sphere, tag)))
@@ -142,11 +170,6 @@ fn start_points(camera: &Camera, width: u16, height: u16) -> [(&'static str, [f6
             [0, 1, 2].map(|i| camera.position[i] + camera.near * ray[i]),
         )
     })
-}
-
-/// The greatest distance from the centre of either sphere to a point of the other.
-fn reach(a: &Sphere, b: &Sphere) -> f64 {
-    length(sub(a.centre, b.centre)) + a.radius.max(b.radius)
 }
 
 fn sub(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
