@@ -167,21 +167,20 @@ impl Scene {
     /// [`Scene::load`] has checked it for the default shape of 4:3; a wider picture looks further to the sides.
     pub fn check_frame(&self, width: u16, height: u16) -> Result<(), SceneError> {
         let spheres = self.spheres.iter().map(|sphere| (sphere, ()));
-        let Some((corner, blocked)) = validate::first_blocked_ray(&self.camera, spheres, width, height)
-        else {
+        let Some((place, blocked)) = validate::first_blocked_ray(&self.camera, spheres, width, height) else {
             return Ok(());
         };
         let cause = match blocked {
             validate::Blocked::Inside(sphere, ()) => {
                 let name = &sphere.name;
                 format!(
-                    "the {corner} ray starts inside the solid of sphere \"{name}\"; choose a shape nearer to 4:3"
+                    "the {place} ray starts inside the solid of sphere \"{name}\"; choose a shape nearer to 4:3"
                 )
             }
             validate::Blocked::TooFar(sphere, ()) => {
                 let name = &sphere.name;
                 format!(
-                    "the {corner} ray starts beyond the tracer's reach of sphere \"{name}\"; choose a narrower shape"
+                    "the {place} ray starts beyond the tracer's reach of sphere \"{name}\"; choose a narrower shape"
                 )
             }
         };

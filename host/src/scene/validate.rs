@@ -102,15 +102,15 @@ fn camera_is_in_free_space(draft: &Draft, source: &mut Source<'_>) {
     // What else a scene is seen at, `check_frame` checks: here it is the default picture.
     let spheres = draft.spheres.iter().map(|placed| (&placed.sphere, placed.at));
     let trouble = first_blocked_ray(&draft.camera, spheres, 256, 192);
-    if let Some((corner, blocked)) = trouble {
+    if let Some((place, blocked)) = trouble {
         let message = match blocked {
             Blocked::Inside(sphere, at) => format!(
-                "the {corner} ray starts inside the solid of sphere \"{}\" (line {}); move the camera or change `near`",
+                "the {place} ray starts inside the solid of sphere \"{}\" (line {}); move the camera or change `near`",
                 sphere.name,
                 source.line(at)
             ),
             Blocked::TooFar(sphere, at) => format!(
-                "the {corner} ray starts too far from the centre of sphere \"{}\" (line {}), beyond the tracer's reach ({REACH}); move the camera nearer",
+                "the {place} ray starts too far from the centre of sphere \"{}\" (line {}), beyond the tracer's reach ({REACH}); move the camera nearer",
                 sphere.name,
                 source.line(at)
             ),
@@ -125,7 +125,7 @@ pub(super) enum Blocked<'s, T> {
     TooFar(&'s Sphere, T),
 }
 
-/// Looks at the middle and the four corners of a picture of this shape.
+/// Looks at the middle, the corners and the edges of a picture of this shape.
 pub(super) fn first_blocked_ray<'s, T>(
     camera: &Camera,
     spheres: impl Iterator<Item = (&'s Sphere, T)> + Clone,
@@ -134,13 +134,13 @@ pub(super) fn first_blocked_ray<'s, T>(
 ) -> Option<(&'static str, Blocked<'s, T>)> {
     start_points(camera, width, height)
         .into_iter()
-        .find_map(|(corner, start)| {
+        .find_map(|(place, start)| {
             spheres.clone().find_map(|(sphere, tag)| {
                 let distance = length(sub(start, sphere.centre));
                 if distance >= REACH {
-                    Some((corner, Blocked::TooFar(sphere, tag)))
+                    Some((place, Blocked::TooFar(sphere, tag)))
                 } else if (distance < sphere.radius) != sphere.hollow {
-                    Some((corner, Blocked::Inside(sphere, tag)))
+                    Some((place, Blocked::Inside(sphere, tag)))
                 } else {
                     None
                 }
@@ -148,27 +148,29 @@ pub(super) fn first_blocked_ray<'s, T>(
         })
 }
 
-/// Where the rays in the middle and at the corners start. The tent filter reaches a quarter of a pixel outwards.
-fn start_points(camera: &Camera, width: u16, height: u16) -> [(&'static str, [f64; 3]); 5] {
+/// Where the rays in the middle, at the corners and halfway between these start: along an edge, a ray through its middle
+/// is least oblique and so starts furthest out. What the tent filter adds, a quarter of a pixel, is left out: the few rays
+/// that start there in a wall are too few to be measured.
+fn start_points(camera: &Camera, width: u16, height: u16) -> [(&'static str, [f64; 3]); 9] {
     let aspect = f64::from(width) / f64::from(height);
     let right = normalised(cross(camera.direction, camera.up));
     let up = cross(right, camera.direction);
-    let reach_x = camera.plane_height * aspect * (0.5 + 0.25 / f64::from(width));
-    let reach_y = camera.plane_height * (0.5 + 0.25 / f64::from(height));
+    let (half_width, half_height) = (camera.plane_height * aspect / 2.0, camera.plane_height / 2.0);
     [
         ("middle", 0.0, 0.0),
+        ("top", 0.0, 1.0),
+        ("bottom", 0.0, -1.0),
+        ("left", -1.0, 0.0),
+        ("right", 1.0, 0.0),
         ("top left", -1.0, 1.0),
         ("top right", 1.0, 1.0),
         ("bottom left", -1.0, -1.0),
         ("bottom right", 1.0, -1.0),
     ]
-    .map(|(corner, x, y)| {
-        let ray =
-            normalised([0, 1, 2].map(|i| camera.direction[i] + x * reach_x * right[i] + y * reach_y * up[i]));
-        (
-            corner,
-            [0, 1, 2].map(|i| camera.position[i] + camera.near * ray[i]),
-        )
+    .map(|(name, x, y)| {
+        let (across, upwards) = (x * half_width, y * half_height);
+        let ray = normalised([0, 1, 2].map(|i| camera.direction[i] + across * right[i] + upwards * up[i]));
+        (name, [0, 1, 2].map(|i| camera.position[i] + camera.near * ray[i]))
     })
 }
 
