@@ -45,6 +45,17 @@ impl SetUp {
     }
 }
 
+/// The error and its causes, but not those that the text before has named already.
+fn message(error: &anyhow::Error) -> String {
+    let mut text = error.to_string();
+    for cause in error.chain().skip(1).map(ToString::to_string) {
+        if !text.contains(&cause) {
+            text = format!("{text}: {cause}");
+        }
+    }
+    text
+}
+
 fn main() -> ExitCode {
     let done = match Verb::parse() {
         Verb::Render(arguments) => render::run(&arguments),
@@ -53,7 +64,7 @@ fn main() -> ExitCode {
         Verb::Size(arguments) => size::run(&arguments),
     };
     done.unwrap_or_else(|error| {
-        eprintln!("error: {error:#}");
+        eprintln!("error: {}", message(&error));
         ExitCode::FAILURE
     })
 }

@@ -279,8 +279,7 @@ impl<'a> Run<'a> {
 
     fn bury(&mut self, core: u16, how: &str) {
         self.cores[usize::from(core)].ended = Some(how.to_owned());
-        self.progress
-            .say(&format!("core {core}: {how}; its work goes to the others"));
+        self.progress.say(&format!("core {core} is gone: {how}"));
         if let Work::Leased(leases) = &mut self.work {
             leases.ended(core);
         }

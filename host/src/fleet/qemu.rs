@@ -31,6 +31,9 @@ pub fn command_line(elf: &Path, boot: Option<&Path>) -> Vec<OsString> {
         "-nographic",
         "-audiodev",
         "none,id=a",
+        // Of the board's sound chip, which would otherwise complain on the console.
+        "-global",
+        "pl041.audiodev=a",
         "-semihosting",
         "-icount",
         "shift=0",

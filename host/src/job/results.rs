@@ -245,16 +245,13 @@ impl Results<'_> {
         };
         line("mean", means(report));
         let error = &report.error;
-        if let (Some(bias), Some(rmse)) = (error.bias, error.rmse) {
-            let noise = error.bias_standard_error.unwrap_or_default();
-            line(
-                "bias",
-                format!(
-                    "{:+.3} % (standard error {:.3} %), rmse {rmse:.5}",
-                    100.0 * bias,
-                    100.0 * noise
-                ),
-            );
+        if let Some(bias) = error.bias {
+            let noise = error
+                .bias_standard_error
+                .map(|noise| format!(" (standard error {:.3} %)", 100.0 * noise));
+            let rmse = error.rmse.map(|rmse| format!(", rmse {rmse:.5}"));
+            let (noise, rmse) = (noise.unwrap_or_default(), rmse.unwrap_or_default());
+            line("bias", format!("{:+.3} %{noise}{rmse}", 100.0 * bias));
         }
         if let Some(tiles) = &error.tiles {
             let (failed, tested, bound) = (tiles.failed, tiles.tested, tiles.threshold_z);
