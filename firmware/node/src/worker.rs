@@ -147,7 +147,7 @@ impl<'a> Worker<'a> {
             epoch: self.boot.epoch,
             samples: extent.samples,
             scene: self.scene,
-            free_leases: self.leases.free(),
+            free_leases: self.free_leases(),
             rejected: self.all_rejected() as u16,
             ticks,
             rays,
@@ -181,7 +181,8 @@ impl<'a> Worker<'a> {
         match order {
             Command::Lease { number, first, count } => {
                 let last = first + (count - 1);
-                last < self.units && self.leases.take(number, first, last).is_ok()
+                let wanted = matches!(self.order, Order::Leased) && last < self.units;
+                wanted && self.leases.take(number, first, last).is_ok()
             }
             Command::Stop => {
                 self.stopped = true;
@@ -193,7 +194,7 @@ impl<'a> Worker<'a> {
     fn say_hello(&mut self) -> Result<(), Fault> {
         self.say(Report::Hello(Hello {
             version: VERSION,
-            free_leases: self.leases.free(),
+            free_leases: self.free_leases(),
             scene: self.scene,
             board: self.board,
             profile: self.boot.profile,
@@ -237,6 +238,14 @@ impl<'a> Worker<'a> {
             self.network.wait(SEND_REST);
         }
         Err(Fault::Network)
+    }
+
+    /// Leases there is room for: none where the core finds its own work.
+    fn free_leases(&self) -> u8 {
+        match self.order {
+            Order::Leased => self.leases.free(),
+            _ => 0,
+        }
     }
 
     fn all_rejected(&self) -> u32 {

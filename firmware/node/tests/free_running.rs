@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 
 use support::{Said, World, boot, run};
 use wire::boot::PixelOrder;
-use wire::{Boot, Order};
+use wire::{Boot, Order, Report};
 
 /// The first `count` units that a core renders by itself.
 fn units(boot: &Boot<'_>, count: usize) -> Vec<u32> {
@@ -61,9 +61,9 @@ fn stochastic_cores_differ_from_each_other_and_repeat_themselves() {
 }
 
 #[test]
-fn a_lease_does_not_disturb_a_free_running_core() {
+fn a_free_running_core_wants_no_lease() {
     let mut seen = 0;
-    let (_, world) = run(&boot(PixelOrder::Sequential), World::default(), |world, said| {
+    let (outcome, world) = run(&boot(PixelOrder::Sequential), World::default(), |world, said| {
         if said.is_hello() {
             world.lease(1, 20, 2);
         }
@@ -73,4 +73,10 @@ fn a_lease_does_not_disturb_a_free_running_core() {
         }
     });
     assert_eq!(world.units(), [6, 7, 8]);
+    assert_eq!(outcome.unwrap().rejected, 1);
+    assert!(world.said.iter().all(|said| match said.report {
+        Report::Hello(hello) => hello.free_leases == 0,
+        Report::Pixels(pixels) => pixels.free_leases == 0,
+        _ => true,
+    }));
 }

@@ -46,15 +46,11 @@ const TRANSMIT_ON: u16 = 0x0081;
 const RECEIVE_ON: u16 = 0x0300;
 const SOFT_RESET: u16 = 0x8000;
 
-// Bank 1.
-const CONTROL: Register<u16> = word(12);
-/// Free a transmit buffer when its packet has left.
-const AUTO_RELEASE: u16 = 0x0800;
-
 // Bank 2.
 const COMMAND: Register<u16> = word(0);
 const PACKET: Register<u8> = byte(2);
 const ALLOCATED: Register<u8> = byte(3);
+const SENT: Register<u8> = byte(4);
 const RECEIVED: Register<u8> = byte(5);
 const POINTER: Register<u16> = word(6);
 const DATA: Register<u16> = word(8);
@@ -64,13 +60,15 @@ const INTERRUPT_MASK: Register<u8> = byte(13);
 const ALLOCATE: u16 = 1 << 5;
 const RESET_MEMORY: u16 = 2 << 5;
 const RELEASE_RECEIVED: u16 = 4 << 5;
+const RELEASE: u16 = 5 << 5;
 const ENQUEUE: u16 = 6 << 5;
 const BUSY: u16 = 1;
-/// In ALLOCATED: it failed. In RECEIVED: there is none.
+/// In ALLOCATED: it failed. In SENT and RECEIVED: there is none.
 const NONE: u8 = 0x80;
 const POINT_TO_SEND: u16 = 0x4000;
 const POINT_TO_RECEIVED: u16 = 0xE000;
 const INTERRUPT_RECEIVED: u8 = 0x01;
+const INTERRUPT_SENT: u8 = 0x02;
 const INTERRUPT_ALLOCATED: u8 = 0x08;
 
 /// Status of a received packet: alignment, checksum, too long, too short.
@@ -83,6 +81,9 @@ const AROUND: usize = 6;
 /// Eleven bits of the count mean something.
 const COUNT_MASK: u16 = 0x07FF;
 const MAX_FRAME: usize = 1514;
+
+/// Buffers of 2 KiB.
+const BUFFERS: u32 = 4;
 
 /// Looks at a busy flag before giving up. QEMU is never busy; the real controller takes microseconds.
 const PATIENCE: u32 = 1000;
@@ -108,7 +109,6 @@ impl Smc91c111 {
         for (offset, part) in (4..).zip(mac) {
             byte(offset).write(part);
         }
-        CONTROL.write(CONTROL.read() | AUTO_RELEASE);
         BANK.write(2);
         command(RESET_MEMORY);
         INTERRUPT_MASK.write(0);
@@ -120,8 +120,26 @@ impl Smc91c111 {
         Some(Self { allocating: false })
     }
 
+    /// Frees the buffers of packets that have left.
+    ///
+    /// The controller could do that by itself (AUTO RELEASE), but QEMU's then frees a buffer before it sends what is in it, and lets
+    /// a waiting received packet overwrite it: under load, packets are lost without a trace.
+    #[inline(never)]
+    fn release_sent() {
+        for _ in 0..BUFFERS {
+            let buffer = SENT.read();
+            if buffer & NONE != 0 {
+                return;
+            }
+            PACKET.write(buffer);
+            command(RELEASE);
+            INTERRUPTS.write(INTERRUPT_SENT);
+        }
+    }
+
     /// Waits a moment for a transmit buffer and chooses it.
     fn allocate(&mut self) -> Result<(), SendError> {
+        Self::release_sent();
         if !self.allocating {
             command(ALLOCATE);
             self.allocating = true;
@@ -152,6 +170,7 @@ impl Frames for Smc91c111 {
         }
         DATA.write(last.first().map_or(0, |&last| CONTROL_ODD | u16::from(last)));
         command(ENQUEUE);
+        Self::release_sent();
         Ok(())
     }
 
