@@ -22,11 +22,8 @@ impl Order {
         match boot.order {
             PixelOrder::Leased => Self::Leased,
             PixelOrder::Sequential => {
-                let next = u64::from(boot.core) * u64::from(units) / u64::from(boot.cores);
-                Self::Sequential {
-                    next: next as u32,
-                    units,
-                }
+                let next = share_start(units, boot.core.into(), boot.cores.into());
+                Self::Sequential { next, units }
             }
             PixelOrder::Stochastic => Self::Stochastic {
                 limit: last_whole_pass(runs),
@@ -55,10 +52,15 @@ impl Order {
     }
 }
 
-/// The greatest unit id of the last whole pass that fits 32 bits: runs * floor(2^32 / runs) - 1.
+/// core * units / cores, for 16-bit core numbers, without the 64-bit division that a core has no instruction for.
+fn share_start(units: u32, core: u32, cores: u32) -> u32 {
+    units / cores * core + units % cores * core / cores
+}
+
+/// The greatest unit id of the last whole pass that fits 32 bits: runs * floor(2^32 / runs) - 1, likewise.
 fn last_whole_pass(runs: u32) -> u32 {
-    let ids = 1u64 << 32;
-    (ids - ids % u64::from(runs) - 1) as u32
+    let left_over = (u32::MAX % runs + 1) % runs;
+    u32::MAX - left_over
 }
 
 /// Steele, Lea and Flood's SplitMix64, of which the upper half is used. It chooses units only: what a unit looks like depends on
@@ -89,6 +91,27 @@ mod tests {
         assert_eq!(last_whole_pass(192), u32::MAX - 64);
         assert_eq!(last_whole_pass(3), u32::MAX - 1);
         assert_eq!(last_whole_pass((1 << 31) + 1), 1 << 31);
+    }
+
+    #[test]
+    fn shares_start_where_64_bits_say() {
+        for (units, cores) in [
+            (24, 4),
+            (24, 5),
+            (3, 7),
+            (u32::MAX, 65535),
+            (u32::MAX - 1, 2),
+            (0xFFFF_0000, 65534),
+        ] {
+            for core in [0, 1, cores / 2, cores - 1] {
+                let expected = u64::from(units) * u64::from(core) / u64::from(cores);
+                assert_eq!(
+                    u64::from(share_start(units, core, cores)),
+                    expected,
+                    "{core} of {cores}"
+                );
+            }
+        }
     }
 
     /// The first output of the published generator for seed 0.

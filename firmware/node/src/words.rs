@@ -1,23 +1,18 @@
 //! Last words, put together where there is no room for formatting.
 
+use heapless::String;
 use wire::MAX_DATA;
 
-/// A text put together without `core::fmt`, which would cost 3 KiB of code memory. What does not fit is cut.
+/// A text put together without `core::fmt`, which would cost kilobytes of code memory. What does not fit is cut.
 #[derive(Debug)]
-pub struct Words {
-    text: [u8; MAX_DATA],
-    len: usize,
-}
+pub struct Words(String<MAX_DATA>);
 
 /// Never inlined: last words are seldom said, and each of their parts in few instructions.
 impl Words {
     /// A text that begins so.
     #[inline(never)]
     pub fn of(text: &str) -> Self {
-        let mut words = Self {
-            text: [0; MAX_DATA],
-            len: 0,
-        };
+        let mut words = Self(String::new());
         words.and(text);
         words
     }
@@ -25,7 +20,10 @@ impl Words {
     /// Appends a text.
     #[inline(never)]
     pub fn and(&mut self, text: &str) -> &mut Self {
-        text.bytes().for_each(|byte| self.push(byte));
+        let room = MAX_DATA - self.0.len();
+        let fitting = text.get(..text.floor_char_boundary(room)).unwrap_or_default();
+        // It fits: it has just been cut to the room there is.
+        let _ = self.0.push_str(fitting);
         self
     }
 
@@ -35,38 +33,27 @@ impl Words {
         if number >= 10 {
             self.decimal(number / 10);
         }
-        self.push(b'0' + (number % 10) as u8);
-        self
+        self.digit(number % 10)
     }
 
     /// Appends a number as eight hexadecimal digits.
     #[inline(never)]
     pub fn hexadecimal(&mut self, number: u32) -> &mut Self {
         for shift in (0..u32::BITS).step_by(4).rev() {
-            let digit = (number >> shift) as u8 & 15;
-            self.push(if digit < 10 {
-                b'0' + digit
-            } else {
-                b'a' - 10 + digit
-            });
+            self.digit(number >> shift & 15);
         }
         self
     }
 
-    /// The text so far, without the first half of a character that was cut in two.
+    /// The text so far.
     pub fn as_str(&self) -> &str {
-        let text = self.text.get(..self.len).unwrap_or_default();
-        match str::from_utf8(text) {
-            Ok(text) => text,
-            Err(error) => str::from_utf8(&text[..error.valid_up_to()]).unwrap_or_default(),
-        }
+        &self.0
     }
 
-    fn push(&mut self, byte: u8) {
-        if let Some(slot) = self.text.get_mut(self.len) {
-            *slot = byte;
-            self.len += 1;
-        }
+    fn digit(&mut self, digit: u32) -> &mut Self {
+        const DIGITS: &str = "0123456789abcdef";
+        let at = digit as usize;
+        self.and(DIGITS.get(at..at + 1).unwrap_or_default())
     }
 }
 
@@ -93,6 +80,6 @@ mod tests {
             words.and("é");
         }
         assert_eq!(words.as_str().len(), 255);
-        assert_eq!(words.and("more").as_str().len(), 255);
+        assert_eq!(words.and("more").as_str().len(), 256);
     }
 }
