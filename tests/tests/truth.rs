@@ -5,6 +5,7 @@
 use host::compare::{Comparison, compare};
 use host::picture::Estimate;
 use host::reference::{self, Job};
+use host::scene::Material;
 use tracer::profile::{Paper, Precise, Profile};
 use whole_system::{cornell, estimate, plan};
 
@@ -61,13 +62,21 @@ fn no_tile_of_precise_is_further_off_than_chance_allows() {
     assert_eq!(found.tiles.failed().count(), 0);
 }
 
-/// Not a virtue but a fact, and proof that the tile test sees an error of this size.
+/// Proof that the tile test can fail: the glass ball gets an index of 1.3 instead of 1.5, which moves its caustic and
+/// leaves the mean where it was.
 #[test]
-fn tiles_of_paper_are_seen_to_be_off() {
+fn tiles_see_a_glass_ball_of_the_wrong_index() {
     let reference = reference(64, 48, 4096);
-    let (paper, _) = estimate::<Paper>(&cornell(), &plan::<Paper>(64, 48, 256));
-    let found = compare(&paper, &reference).unwrap();
-    show("paper", &found);
+    let mut wrong = cornell();
+    for sphere in &mut wrong.spheres {
+        if let Material::Glass { index, .. } = &mut sphere.material {
+            *index = 1.3;
+        }
+    }
+    let (precise, _) = estimate::<Precise>(&wrong, &plan::<Precise>(64, 48, 4096));
+    let found = compare(&precise, &reference).unwrap();
+    show("index 1.3", &found);
+    assert!(found.bias.unwrap().abs() < 0.01, "the mean alone would not tell");
     assert!(found.tiles.failed().count() > 0);
 }
 
