@@ -19,7 +19,7 @@ pub struct State {
     pub samples: u64,
     /// Samples wanted.
     pub wanted: u64,
-    /// Packets received.
+    /// Pixel packets received.
     pub packets: u64,
 }
 

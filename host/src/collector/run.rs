@@ -187,7 +187,6 @@ impl<'a> Run<'a> {
 
     /// The accounts of a packet, and the packet if it is ours.
     fn judge<'p>(&mut self, payload: &'p [u8], source: std::net::SocketAddr) -> Option<FromCore<'p>> {
-        self.packets.received += 1;
         let packet = match judge(self.session, payload) {
             Ok(packet) => packet,
             Err(rejection) => {
@@ -213,6 +212,7 @@ impl<'a> Run<'a> {
 
     fn take_pixels(&mut self, core: u16, pixels: &Pixels) -> Result<(), CollectError> {
         let now = self.now();
+        self.packets.received += 1;
         let arrival = match &mut self.work {
             Work::Leased(leases) => leases.arrived(core, pixels.unit, now),
             Work::Free(done) => match done.insert(pixels.unit) {

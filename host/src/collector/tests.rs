@@ -111,6 +111,11 @@ impl Cores {
     }
 
     fn join(self) -> Vec<Result<Outcome, Fault>> {
+        // Those that were told to stop still say farewell a few times; the others never end by themselves.
+        let start = Instant::now();
+        while !self.threads.iter().all(JoinHandle::is_finished) && start.elapsed() < Duration::from_secs(1) {
+            thread::sleep(Duration::from_millis(1));
+        }
         self.given_up.store(true, Ordering::Relaxed);
         self.threads
             .into_iter()

@@ -26,10 +26,10 @@ pub struct PictureOptions {
     #[arg(long, value_name = "WxH", default_value = "256x192")]
     pub size: Size,
     /// Samples per pixel in all, a multiple of 4
-    #[arg(long, value_name = "N", default_value = "64", value_parser = samples_per_pixel)]
+    #[arg(long, value_name = "N", default_value = "64", value_parser = samples_per_pixel, allow_negative_numbers = true)]
     pub spp: u32,
     /// Number of cores
-    #[arg(long, value_name = "N", default_value = "4", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(long, value_name = "N", default_value = "4", value_parser = clap::value_parser!(u16).range(1..=1024), allow_negative_numbers = true)]
     pub cores: u16,
     /// Arithmetic
     #[arg(long, value_enum, default_value_t)]
@@ -44,13 +44,13 @@ pub struct PictureOptions {
     #[arg(long, value_enum, default_value_t)]
     pub pixels: Pixels,
     /// Seed of the random numbers
-    #[arg(long, value_name = "N", default_value = "1")]
+    #[arg(long, value_name = "N", default_value = "1", allow_negative_numbers = true)]
     pub seed: u64,
     /// What to compare with: `none`, or an OpenEXR file [default: computed in double precision, and kept]
     #[arg(long, value_name = "none|FILE")]
     pub reference: Option<Reference>,
     /// Samples per pixel of the computed reference, a multiple of 4
-    #[arg(long, value_name = "N", default_value = "512", value_parser = samples_per_pixel)]
+    #[arg(long, value_name = "N", default_value = "512", value_parser = samples_per_pixel, allow_negative_numbers = true)]
     pub reference_spp: u32,
     /// Folder for the results [default: out/SCENE-PROFILE]
     #[arg(long, value_name = "DIR")]
@@ -70,7 +70,7 @@ pub struct RenderOptions {
     #[arg(long, value_enum, default_value_t)]
     pub backend: Backend,
     /// UDP port of the collector [default: any free one]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub port: Option<u16>,
     /// Say what is missing on this machine, and stop instead of installing it
     #[arg(long)]
@@ -337,7 +337,8 @@ mod tests {
         for (arguments, said) in [
             (["--spp", "0"], "a multiple of 4"),
             (["--spp", "6"], "a multiple of 4"),
-            (["--spp", "-4"], "--spp"),
+            (["--spp", "-4"], "a multiple of 4"),
+            (["--seed", "-1"], "invalid digit"),
             (["--size", "0x0"], "from 1 to 65535"),
             (["--size", "70000x2"], "from 1 to 65535"),
             (["--size", "64"], "as in 256x192"),
