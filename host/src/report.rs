@@ -92,6 +92,8 @@ pub struct Error {
     pub bias_standard_error: Option<f64>,
     /// Noise-corrected root of the mean squared error, linear radiance. Null unless both sides' noise is known.
     pub rmse: Option<f64>,
+    /// The largest `rmse` that the noise leaves room for: two standard errors up.
+    pub rmse_at_most: Option<f64>,
     /// The square of `rmse` before it was cut off at zero.
     pub squared_error: Option<f64>,
     /// Its standard error.
@@ -110,7 +112,8 @@ pub struct Error {
     pub reference_spp: Option<u32>,
     /// The test of every tile against its confidence interval. Null unless both sides' noise is known.
     pub tiles: Option<TileTest>,
-    /// The chi-squared test of the pixels' p-values: how likely their unevenness is without any error.
+    /// The chi-squared test of the pixels' p-values: how likely their unevenness is without any error. Null below 1,024
+    /// samples per pixel.
     pub uniformity_p_value: Option<f64>,
 }
 
@@ -166,6 +169,7 @@ impl Error {
             bias: comparison.bias,
             bias_standard_error: comparison.bias_standard_error.filter(|_| noise_known),
             rmse: known(comparison.rmse),
+            rmse_at_most: known(comparison.squared_error.rmse_at_most()),
             squared_error: known(comparison.squared_error.corrected),
             squared_error_standard_error: known(comparison.squared_error.standard_error),
             psnr_db: comparison.psnr_db,

@@ -5,7 +5,7 @@
 //!
 //! - **bias**: the difference of the means over the reference's mean. Errors of either sign cancel in it.
 //! - **rmse**: the root of `mean(d² - v)`: `mean(d²)` alone would be mostly noise. Where noise hides the error the mean
-//!   may come out below zero; then `rmse` is 0 and [`SquaredError`] says how much could hide.
+//!   may come out below zero; then `rmse` is 0 and [`SquaredError::rmse_at_most`] says how much could hide.
 //! - **tiles**: what a mean over the picture forgives, a tile of 8x8 pixels does not. See [`Tiles`].
 //! - **uniformity**: were `v` right and `d` nothing but noise, the pixels' p-values would be uniform. See [`Uniformity`].
 //!
@@ -42,7 +42,7 @@ pub struct Comparison {
     pub psnr_db: Option<f64>,
     /// Tile by tile.
     pub tiles: Tiles,
-    /// Pixel by pixel; `None` when neither side has a variance, or too few pixels have noise for a test.
+    /// Pixel by pixel; `None` when neither side has a variance, or too few pixels or samples of them for a test.
     pub uniformity: Option<Uniformity>,
     /// Pixels that both pictures have.
     pub compared: usize,
@@ -60,11 +60,18 @@ pub struct SquaredError {
     pub standard_error: f64,
 }
 
+impl SquaredError {
+    /// The largest root of the mean squared error that these figures leave room for: two standard errors up.
+    pub fn rmse_at_most(&self) -> f64 {
+        (self.corrected.max(0.0) + 2.0 * self.standard_error).sqrt()
+    }
+}
+
 /// Whether pixels differ as noise would have them differ.
 ///
 /// The green channel of every pixel is tested against its own noise (Welch's test, normal for the many samples of a
-/// pixel), and the p-values are counted in bins of equal width. The chi-squared test over the bins presumes means
-/// near a normal distribution: with few samples per pixel, or fireflies, it fails without any error in the picture.
+/// pixel), and the p-values are counted in bins of equal width. The chi-squared test over the bins presumes means near a
+/// normal distribution, which those of few paths are far from: below 1,024 samples per pixel it is not made.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Uniformity {
     /// p-values in [0, 1) by bins of 1/20.
@@ -74,6 +81,8 @@ pub struct Uniformity {
 }
 
 const BINS: usize = 20;
+/// Fewer samples leave the mean of a pixel too skewed for [`Uniformity`].
+const FEWEST_SAMPLES: u32 = 1024;
 /// The chi-squared test wants about five in each bin.
 const FEWEST_TESTED: usize = 5 * BINS;
 
@@ -155,7 +164,8 @@ pub fn compare(image: &Estimate, reference: &Estimate) -> Result<Comparison, Com
         max_abs: present.iter().map(Pair::largest_difference).fold(0.0, f64::max),
         psnr_db: psnr_db(&present),
         tiles: tiles::test(&pixels, size, reference_level / 3.0),
-        uniformity: uniformity(&present).filter(|_| noisy),
+        uniformity: uniformity(&present)
+            .filter(|_| noisy && nearly_normal(image) && nearly_normal(reference)),
         compared: present.len(),
         missing: pixels.len() - present.len(),
     })
@@ -207,6 +217,11 @@ fn psnr_db(pixels: &[Pair]) -> Option<f64> {
         .map(|pair| (0..3).map(|c| square(pair, c)).sum::<f64>())
         .sum();
     (sum > 0.0).then(|| -10.0 * (sum / (3 * pixels.len()) as f64).log10())
+}
+
+/// Whether the pixels' means are near enough to a normal distribution, or exact.
+fn nearly_normal(estimate: &Estimate) -> bool {
+    estimate.variance.is_none() || estimate.spp.is_some_and(|spp| spp >= FEWEST_SAMPLES)
 }
 
 fn uniformity(pixels: &[Pair]) -> Option<Uniformity> {

@@ -49,7 +49,7 @@ fn estimate(seed: u64, change: impl Fn(u16, u16, [f64; 3]) -> [f64; 3]) -> Estim
     Estimate {
         picture: Picture::new(SIZE.0, SIZE.1, pixels),
         variance: Some(variance),
-        spp: Some(64),
+        spp: Some(1024),
     }
 }
 
@@ -135,6 +135,7 @@ fn noise_is_taken_off_the_squared_error() {
         corrected.abs() < 4.0 * standard_error,
         "{corrected} +- {standard_error}"
     );
+    assert!(none.squared_error.rmse_at_most() < 0.02 && off.squared_error.rmse_at_most() > 0.03);
     // The raw mean square would have been 2 * 0.05^2 = 0.005.
     assert!(standard_error < 0.0002, "{standard_error}");
 }
@@ -152,6 +153,22 @@ fn noise_alone_raises_no_more_alarms_than_stated() {
     // 3 expected at most of each; 11 or more happen once in 3,000 such tests.
     assert!(alarms <= 10, "{alarms} of {runs}");
     assert!(uneven <= 10, "{uneven} of {runs}");
+}
+
+#[test]
+fn few_samples_are_not_tested_for_a_normal_distribution() {
+    let few = Estimate {
+        spp: Some(64),
+        ..estimate(1, unchanged)
+    };
+    assert_eq!(compare(&few, &estimate(2, unchanged)).unwrap().uniformity, None);
+    assert_eq!(compare(&estimate(2, unchanged), &few).unwrap().uniformity, None);
+    assert!(
+        compare(&estimate(1, unchanged), &exact(|rgb| rgb))
+            .unwrap()
+            .uniformity
+            .is_some()
+    );
 }
 
 #[test]

@@ -166,8 +166,9 @@ fn header(canvas: &Canvas<'_>, title: &str, comparison: &Comparison) -> Result<(
         (
             NORMAL,
             format!(
-                "bias {bias}     noise-corrected rmse {:.5}     display PSNR {psnr}",
-                comparison.rmse
+                "bias {bias}     noise-corrected rmse {:.4} (at most {:.4})     display PSNR {psnr}",
+                comparison.rmse,
+                comparison.squared_error.rmse_at_most()
             ),
         ),
         (
