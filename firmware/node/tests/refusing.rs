@@ -1,0 +1,103 @@
+//! Jobs that a core refuses before it says a word, and the last words it has for that.
+
+use node::{Clock, Fault, Network, SendError, StackUse};
+use tracer::profile::Precise;
+use tracer::scene::All;
+use wire::boot::PixelOrder;
+use wire::{Boot, FromCore, Name, Report};
+
+/// Keeps what is sent, as long as there is room for it.
+#[derive(Default)]
+struct Mailbox {
+    sent: Vec<Vec<u8>>,
+    full: bool,
+}
+
+impl Network for &mut Mailbox {
+    fn send(&mut self, payload: &[u8]) -> Result<(), SendError> {
+        if self.full {
+            return Err(SendError);
+        }
+        self.sent.push(payload.to_vec());
+        Ok(())
+    }
+
+    fn receive(&mut self, _buffer: &mut [u8]) -> Option<usize> {
+        None
+    }
+
+    fn wait(&mut self, _ticks: u32) {}
+}
+
+struct Stopped;
+
+impl Clock for Stopped {
+    fn ticks(&mut self) -> u32 {
+        0
+    }
+}
+
+fn job() -> Boot<'static> {
+    Boot {
+        core: 20,
+        cores: 21,
+        session: 77,
+        epoch: 0,
+        width: 16,
+        height: 1,
+        samples_per_unit: 4,
+        spp: 4,
+        seed: 0,
+        epsilon: 0,
+        termination: 0,
+        order: PixelOrder::Leased,
+        profile: Name::new("precise"),
+        collector: [10, 0, 2, 2],
+        port: 17893,
+        address: [10, 0, 2, 15],
+        scene: b"this is no scene",
+    }
+}
+
+fn refused(boot: &Boot<'_>) -> Fault {
+    let mut mailbox = Mailbox::default();
+    let outcome =
+        node::run::<Precise, All>(boot, Name::new("fake"), &mut mailbox, Stopped, StackUse::default);
+    assert!(mailbox.sent.is_empty(), "a core that cannot work asks for none");
+    outcome.unwrap_err()
+}
+
+#[test]
+fn a_job_for_another_profile() {
+    let profile = Name::new("paper");
+    assert_eq!(refused(&Boot { profile, ..job() }), Fault::Profile);
+}
+
+#[test]
+fn a_scene_that_is_none() {
+    assert_eq!(refused(&job()), Fault::Scene);
+    assert_eq!(refused(&Boot { scene: &[], ..job() }), Fault::Scene);
+}
+
+#[test]
+fn last_words_name_the_core() {
+    let mut mailbox = Mailbox::default();
+    let words = Fault::Scene.as_str();
+    node::last_words(&job(), &mut &mut mailbox, words).unwrap();
+    let expected = FromCore {
+        core: 20,
+        seq: 0,
+        session: 77,
+        report: Report::Fault(words),
+    };
+    assert_eq!(FromCore::decode(&mailbox.sent[0]), Ok(expected));
+}
+
+#[test]
+fn last_words_are_tried_once() {
+    let mut mailbox = Mailbox {
+        full: true,
+        ..Mailbox::default()
+    };
+    assert_eq!(node::last_words(&job(), &mut &mut mailbox, "!"), Err(SendError));
+}
