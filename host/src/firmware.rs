@@ -4,11 +4,12 @@
 //! target folder of their own, so that changing the scene compiles only the board's crate again, and so that the host's
 //! builds are not kept waiting; the finished image is then put beside it under a name that says what it is.
 
-use std::fmt;
+use std::ffi::OsString;
 use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::{env, fmt};
 
 use object::{Object, ObjectSection, ObjectSegment, ObjectSymbol, SectionFlags};
 use serde::Serialize;
@@ -221,11 +222,24 @@ pub fn cargo(toolchain: &Toolchain, verb: &str, recipe: &Recipe) -> Command {
         .env("CARGO_TARGET_ARMV5TE_NONE_EABI_LINKER", &toolchain.linker)
         .env("TRACER_PROFILE", recipe.profile.name())
         .env("TRACER_NEEDS", recipe.words())
+        // Cargo's subcommands must be of the same toolchain.
+        .env("PATH", path_from(toolchain.compiler.cargo.parent()))
         // Flags meant for the host's programs are not for a board's.
         .env_remove("RUSTFLAGS")
         .env_remove("CARGO_ENCODED_RUSTFLAGS")
         .env_remove("RUSTUP_TOOLCHAIN");
     command
+}
+
+/// PATH with another folder before all others.
+fn path_from(first: Option<&Path>) -> OsString {
+    let path = env::var_os("PATH").unwrap_or_default();
+    let folders = first
+        .map(Path::to_owned)
+        .into_iter()
+        .chain(env::split_paths(&path));
+    // A folder that cannot be in a PATH was not found by one.
+    env::join_paths(folders).unwrap_or(path)
 }
 
 /// The workspace this program was built from.
@@ -234,9 +248,9 @@ pub fn workspace() -> &'static Path {
     host.parent().unwrap_or(host)
 }
 
-fn target_folder() -> PathBuf {
-    let target =
-        std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| workspace().join("target"), PathBuf::from);
+/// Where firmware is built: a folder of its own, so that host builds and it do not wait for each other.
+pub fn target_folder() -> PathBuf {
+    let target = env::var_os("CARGO_TARGET_DIR").map_or_else(|| workspace().join("target"), PathBuf::from);
     target.join("firmware")
 }
 

@@ -75,6 +75,8 @@ struct Holder {
     pace: Pace,
     /// When it last said something, or was given work after it had none.
     heard: Duration,
+    /// Its leases were taken back; it gets others once it says something.
+    silent: bool,
 }
 
 /// The lease table.
@@ -116,7 +118,6 @@ impl Leases {
         let Some(holder) = self.holder(core, now) else {
             return;
         };
-        holder.heard = now;
         holder.pace.pause();
         // Granted in order, so the settled ones are at the front.
         let is_settled = |lease: &Lease| now.saturating_sub(lease.granted) >= SETTLED;
@@ -131,7 +132,6 @@ impl Leases {
     pub fn arrived(&mut self, core: u16, unit: u32, now: Duration) -> Arrival {
         let mut passed = Vec::new();
         if let Some(holder) = self.holder(core, now) {
-            holder.heard = now;
             holder.pace.unit_done(now);
             let of = holder
                 .leases
@@ -183,21 +183,14 @@ impl Leases {
         let is_late = |holder: &Holder| {
             !holder.leases.is_empty() && now.saturating_sub(holder.heard) > patience(holder)
         };
-        let late: Vec<u16> = self
-            .holders
-            .iter()
-            .filter(|(_, holder)| is_late(holder))
-            .map(|(&core, _)| core)
-            .collect();
-        for core in &late {
-            for lease in self
-                .holders
-                .remove(core)
-                .map(|holder| holder.leases)
-                .unwrap_or_default()
-            {
-                self.take_back(lease.next..lease.end);
-            }
+        let (mut late, mut lost) = (Vec::new(), Vec::new());
+        for (&core, holder) in self.holders.iter_mut().filter(|(_, holder)| is_late(holder)) {
+            late.push(core);
+            lost.extend(holder.leases.drain(..));
+            holder.silent = true;
+        }
+        for lease in lost {
+            self.take_back(lease.next..lease.end);
         }
         late
     }
@@ -207,7 +200,7 @@ impl Leases {
         let cores = self.holders.len() as u32;
         let left = self.returned.len() as u32 + (self.units - self.fresh);
         let holder = self.holders.get_mut(&core)?;
-        if holder.leases.len() >= LEASES_PER_CORE {
+        if holder.silent || holder.leases.len() >= LEASES_PER_CORE {
             return None;
         }
         // Towards the end leases get shorter, so that all cores end at about the same time.
@@ -239,7 +232,7 @@ impl Leases {
         self.holders.keys().copied().collect()
     }
 
-    /// The entry of a core that has not ended; made when the core is heard for the first time.
+    /// The entry of a core that has just said something, unless it had ended before.
     fn holder(&mut self, core: u16, now: Duration) -> Option<&mut Holder> {
         if self.dead.contains(&core) {
             return None;
@@ -248,8 +241,11 @@ impl Leases {
             leases: VecDeque::new(),
             pace: Pace::default(),
             heard: now,
+            silent: false,
         };
-        Some(self.holders.entry(core).or_insert_with(new))
+        let holder = self.holders.entry(core).or_insert_with(new);
+        (holder.heard, holder.silent) = (now, false);
+        Some(holder)
     }
 
     /// These units are of no lease any more; those that are not in must be leased again.

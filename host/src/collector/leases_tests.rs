@@ -124,6 +124,26 @@ fn a_core_that_takes_long_over_a_unit_is_given_time() {
 }
 
 #[test]
+fn a_core_that_was_taken_for_silent_keeps_its_pace() {
+    let mut leases = Leases::new(100);
+    leases.idle(0, ms(0));
+    granted(&mut leases, 0, ms(0));
+    assert_eq!(
+        leases.late(ms(2_001)),
+        [0],
+        "nobody knows yet that its units take three seconds"
+    );
+    leases.arrived(0, 0, ms(3_000));
+    granted(&mut leases, 0, ms(3_000));
+    leases.arrived(0, 1, ms(6_000));
+    assert_eq!(
+        leases.late(ms(65_000)),
+        [0_u16; 0],
+        "twenty units of three seconds"
+    );
+}
+
+#[test]
 fn the_whole_range_of_unit_ids_can_be_leased() {
     let mut fresh = u32::MAX - 2;
     assert_eq!(

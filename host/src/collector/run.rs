@@ -21,7 +21,7 @@ use crate::session::Session;
 /// How long the socket is waited for at once, and so how often deaths and late leases are looked for.
 const TICK: Duration = Duration::from_millis(10);
 /// When no core has said a word for this long, none will.
-const SILENCE: Duration = Duration::from_secs(8);
+const SILENCE: Duration = Duration::from_secs(7);
 /// How long cores that were told to stop are waited for.
 const FAREWELL_TIME: Duration = Duration::from_secs(2);
 /// STOP is said again this often to a core that has not answered.

@@ -263,8 +263,8 @@ fn when_all_cores_are_silent_it_ends_within_ten_seconds_and_names_them() {
     };
     let (collection, _, took) = collected(&session, &[dying; 2], &RUNNING);
     assert!(
-        took < Duration::from_secs(11),
-        "8 s of silence and 2 s for a last word, not {took:?}"
+        took < Duration::from_secs(10),
+        "7 s of silence and 2 s for a last word, not {took:?}"
     );
     let End::Deserted(why) = collection.end else {
         panic!("it cannot be complete: {:?}", collection.end)
