@@ -96,7 +96,7 @@ fn share_within<P: Profile>(limit: f64) -> f64 {
 
 /// A pixel of 64 samples walks about 430 rays; one path that rounding sends elsewhere spoils it.
 #[test]
-fn precise_walks_the_paths_of_its_double() {
+fn precise_follows_the_paths_of_its_double() {
     let share = share_within::<Precise>(0.001);
     println!(
         "precise: {:.2} % of pixels within 0.001 of the lockstep oracle",

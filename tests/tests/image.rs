@@ -1,0 +1,129 @@
+//! Firmware images: what must not link does not, what goes wrong on a core is said, and every image fits.
+
+use std::process::{Command, Output};
+
+use host::arithmetic::Arithmetic;
+use host::firmware::{self, Recipe, build};
+use host::fleet::command_line;
+use host::scene::SceneNeeds;
+use host::setup::{self, Install, Toolchain, Wanted};
+
+const ALL: SceneNeeds = SceneNeeds {
+    diffuse: true,
+    mirror: true,
+    glass: true,
+};
+
+fn recipe(profile: Arithmetic, needs: SceneNeeds) -> Recipe {
+    Recipe {
+        profile,
+        needs,
+        roulette: true,
+    }
+}
+
+fn toolchain() -> Toolchain {
+    let wanted = Wanted {
+        firmware: true,
+        ..Wanted::default()
+    };
+    setup::ensure(wanted, Install::Forbidden)
+        .unwrap()
+        .firmware
+        .unwrap()
+}
+
+/// Builds one of the board's examples, and says where its ELF is.
+fn example(name: &str) -> (Output, std::path::PathBuf) {
+    let mut command = firmware::cargo(&toolchain(), "build", &recipe(Arithmetic::Precise, ALL));
+    let output = command.args(["--example", name]).output().unwrap();
+    let folder = firmware::target_folder();
+    (
+        output,
+        folder.join("armv5te-none-eabi/firmware/examples").join(name),
+    )
+}
+
+fn refused(name: &str) -> String {
+    let (output, _) = example(name);
+    assert!(!output.status.success(), "{name} was built");
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+/// Runs an example on a core: its exit code and what it said.
+fn run(name: &str) -> (Option<i32>, String) {
+    let (output, elf) = example(name);
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    let wanted = Wanted {
+        qemu: true,
+        ..Wanted::default()
+    };
+    let qemu = setup::ensure(wanted, Install::Forbidden).unwrap().qemu.unwrap();
+    let output = Command::new(qemu)
+        .args(command_line(&elf, None))
+        .output()
+        .unwrap();
+    let said = [output.stdout, output.stderr]
+        .map(|bytes| String::from_utf8_lossy(&bytes).into_owned())
+        .concat();
+    (output.status.code(), said)
+}
+
+#[test]
+fn an_image_with_a_float_in_it_does_not_link() {
+    let text = refused("float_probe");
+    assert!(text.contains("float"), "{text}");
+    assert!(
+        text.contains("__aeabi_fmul") || text.contains("__mulsf3"),
+        "{text}"
+    );
+}
+
+#[test]
+fn an_image_with_too_much_code_or_data_does_not_link() {
+    let text = refused("code_probe");
+    assert!(text.contains("ITCM") || text.contains("CODE"), "{text}");
+    let text = refused("data_probe");
+    assert!(text.contains("data and stacks do not fit"), "{text}");
+}
+
+#[test]
+fn the_core_s_clock_counts_instructions() {
+    let (code, said) = run("clock_probe");
+    assert_eq!(code, Some(0), "{said}");
+}
+
+#[test]
+fn a_panic_and_a_fault_say_what_and_where_and_end_the_core() {
+    let (code, said) = run("panic_probe");
+    assert!(code.is_some_and(|code| code != 0), "{said}");
+    assert!(said.contains("panic_probe.rs"), "{said}");
+    let (code, said) = run("exception_probe");
+    assert!(code.is_some_and(|code| code != 0), "{said}");
+    assert!(said.contains("undefined"), "{said}");
+}
+
+#[test]
+fn every_image_fits_and_holds_no_more_than_its_scene_needs() {
+    let toolchain = toolchain();
+    for profile in Arithmetic::ALL {
+        let full = build(&toolchain, &recipe(profile, ALL)).unwrap().size;
+        println!("{profile}: {full}");
+        assert!(full.float_symbols.is_empty());
+        let plain = SceneNeeds {
+            mirror: false,
+            glass: false,
+            ..ALL
+        };
+        let plain = build(&toolchain, &recipe(profile, plain)).unwrap().size;
+        println!("{profile}, diffuse only: {plain}");
+        assert!(
+            plain.itcm_bytes + 500 < full.itcm_bytes,
+            "a mirror and a dielectric are code"
+        );
+    }
+}
