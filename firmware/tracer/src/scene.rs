@@ -69,8 +69,15 @@ impl<N: Numbers> Scene<N> {
         if count > MAX_SPHERES || hollow > count || rest.len() != count * SPHERE_BYTES {
             return Err(BlobError::BadCounts);
         }
-        let mut spheres = [Sphere::unused(); MAX_SPHERES];
-        for (i, (sphere, bytes)) in spheres
+        // Built where it stays: a second copy would be a quarter of a core's stack.
+        let mut scene = Self {
+            camera: Camera::of_record(&header.camera),
+            spheres: [Sphere::unused(); MAX_SPHERES],
+            hollow,
+            count,
+        };
+        for (i, (sphere, bytes)) in scene
+            .spheres
             .iter_mut()
             .zip(rest.chunks_exact(SPHERE_BYTES))
             .enumerate()
@@ -86,12 +93,7 @@ impl<N: Numbers> Scene<N> {
             }
             *sphere = Sphere::of_record(&record, i < hollow);
         }
-        Ok(Self {
-            camera: Camera::of_record(&header.camera),
-            spheres,
-            hollow,
-            count,
-        })
+        Ok(scene)
     }
 
     /// All spheres, hollow ones first.

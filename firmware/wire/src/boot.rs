@@ -42,7 +42,7 @@ pub const HEADER_LEN: usize = 80;
 const CHECKSUM_AT: usize = 76;
 
 /// Bytes of a board's memory kept for the boot block, and so its greatest length.
-pub const MAX_LEN: usize = 4096;
+pub const MAX_LEN: usize = 0x1600;
 
 /// In which order a core takes its units.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
