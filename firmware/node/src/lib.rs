@@ -89,7 +89,8 @@ pub fn run<P: Profile, N: Needs>(
     if boot.profile != Name::new(P::NAME) {
         return Err(Fault::Profile);
     }
-    let scene = Scene::<P::Numbers>::decode::<N>(boot.scene).map_err(Fault::from)?;
+    let mut scene = Scene::<P::Numbers>::empty();
+    scene.load::<N>(boot.scene).map_err(Fault::from)?;
     let plan = plan(boot);
     let mut renderer = |unit, sums: &mut Sums| tracer::unit::render::<P, N>(&scene, &plan, unit, sums);
     Worker::new(boot, plan, board, &mut renderer, &mut network, &mut clock)?.run(stack)

@@ -64,19 +64,32 @@ pub struct Scene<N: Numbers> {
 impl<N: Numbers> Scene<N> {
     /// Decodes a blob written by the host's scene compiler, for an image built with `F`.
     pub fn decode<F: Needs>(blob: &[u8]) -> Result<Self, BlobError> {
+        let mut scene = Self::empty();
+        scene.load::<F>(blob)?;
+        Ok(scene)
+    }
+
+    /// A scene without spheres, to be loaded.
+    pub fn empty() -> Self {
+        Self {
+            camera: Camera::of_record(&CameraRecord::default()),
+            spheres: [Sphere::of_record(&SphereRecord::default(), false); MAX_SPHERES],
+            hollow: 0,
+            count: 0,
+        }
+    }
+
+    /// As [`Scene::decode`], into a scene that already has its place: a second copy would be a quarter of a core's stack.
+    ///
+    /// After an error the scene is empty.
+    pub fn load<F: Needs>(&mut self, blob: &[u8]) -> Result<(), BlobError> {
+        (self.hollow, self.count) = (0, 0);
         let (header, rest) = Header::decode(blob)?;
         let (hollow, count) = (usize::from(header.hollow), usize::from(header.spheres));
         if count > MAX_SPHERES || hollow > count || rest.len() != count * SPHERE_BYTES {
             return Err(BlobError::BadCounts);
         }
-        // Built where it stays: a second copy would be a quarter of a core's stack.
-        let mut scene = Self {
-            camera: Camera::of_record(&header.camera),
-            spheres: [Sphere::unused(); MAX_SPHERES],
-            hollow,
-            count,
-        };
-        for (i, (sphere, bytes)) in scene
+        for (i, (sphere, bytes)) in self
             .spheres
             .iter_mut()
             .zip(rest.chunks_exact(SPHERE_BYTES))
@@ -93,7 +106,9 @@ impl<N: Numbers> Scene<N> {
             }
             *sphere = Sphere::of_record(&record, i < hollow);
         }
-        Ok(scene)
+        self.camera = Camera::of_record(&header.camera);
+        (self.hollow, self.count) = (hollow, count);
+        Ok(())
     }
 
     /// All spheres, hollow ones first.
@@ -113,24 +128,6 @@ impl<N: Numbers> Scene<N> {
 }
 
 impl<N: Numbers> Sphere<N> {
-    fn unused() -> Self {
-        Self::of_record(
-            &SphereRecord {
-                centre: [0; 3],
-                radius: 0,
-                square: 0,
-                reciprocal: 0,
-                shift: 0,
-                emission: [0; 3],
-                reflectance: [0; 3],
-                survivor: [0; 3],
-                survival: 0,
-                material: MaterialRecord::Diffuse,
-            },
-            false,
-        )
-    }
-
     fn of_record(record: &SphereRecord, hollow: bool) -> Self {
         let bsdf = match record.material {
             MaterialRecord::Diffuse => Bsdf::Diffuse,

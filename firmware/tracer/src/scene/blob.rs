@@ -59,7 +59,7 @@ pub struct Header {
 }
 
 /// The camera as encoded.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct CameraRecord {
     /// Pinhole, 16:16.
     pub position: [i32; 3],
@@ -78,7 +78,7 @@ pub struct CameraRecord {
 }
 
 /// A sphere as encoded.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SphereRecord {
     /// Centre, 16:16.
     pub centre: [i32; 3],
@@ -103,9 +103,10 @@ pub struct SphereRecord {
 }
 
 /// A material as encoded.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum MaterialRecord {
     /// Number 0.
+    #[default]
     Diffuse,
     /// Number 1.
     Mirror,
