@@ -46,7 +46,9 @@ pub fn render<P: Profile>(
             let mut moments = vec![Moments::default(); usize::from(plan.extent(run).pixels)];
             for pass in 0..plan.passes() {
                 let id = pass * plan.runs() + run;
-                walk::<Lockstep<P>, All>(&scene, plan, id, |pixel, sample| moments[pixel].add(sample.radiance));
+                walk::<Lockstep<P>, All>(&scene, plan, id, |pixel, sample| {
+                    moments[pixel].add(sample.radiance)
+                });
                 let extent = plan.extent(id);
                 progress(u64::from(extent.pixels) * u64::from(extent.samples));
             }
@@ -188,7 +190,11 @@ impl Numbers for Double {
 
     fn normalised(v: [f64; 3], otherwise: [f64; 3]) -> [f64; 3] {
         let length = dot(v, v).sqrt();
-        if length == 0.0 { otherwise } else { v.map(|component| component / length) }
+        if length == 0.0 {
+            otherwise
+        } else {
+            v.map(|component| component / length)
+        }
     }
 
     fn bisector(a: [f64; 3], b: [f64; 3], otherwise: [f64; 3]) -> [f64; 3] {
