@@ -36,9 +36,24 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
         succeed(cargo(&["clippy", "--all-targets", "--", "--deny", "warnings"]))
     })?;
     lint_firmware(&toolchain, &scene)?;
-    step("tests", || {
+    // With overflow checks and debug assertions, where arithmetic could wrap or panic in one build and not in the other.
+    step("tests, checked build", || {
         succeed(cargo(&[
             "test",
+            "--package",
+            "fixedmath",
+            "--package",
+            "tracer",
+            "--package",
+            "wire",
+            "--package",
+            "node",
+        ]))
+    })?;
+    step("tests, release build", || {
+        succeed(cargo(&[
+            "test",
+            "--release",
             "--workspace",
             "--exclude",
             "versatilepb",
@@ -49,7 +64,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
     let rows = step("firmware", || size::measure(&toolchain, &scene))?;
     println!("{}", size::table(&rows));
     step("whole system", || {
-        succeed(cargo(&["test", "--package", "whole-system"]))
+        succeed(cargo(&["test", "--release", "--package", "whole-system"]))
     })?;
     step("documentation", || {
         let mut command = cargo(&["doc", "--no-deps"]);
