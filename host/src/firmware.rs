@@ -250,8 +250,8 @@ pub fn workspace() -> &'static Path {
 
 /// Where firmware is built: a folder of its own, so that host builds and it do not wait for each other.
 pub fn target_folder() -> PathBuf {
-    let target = env::var_os("CARGO_TARGET_DIR").map_or_else(|| workspace().join("target"), PathBuf::from);
-    target.join("firmware")
+    let target = env::var_os("CARGO_TARGET_DIR").unwrap_or_else(|| "target".into());
+    workspace().join(target).join("firmware")
 }
 
 /// Measures an ELF file. What takes memory of a core is what is loaded there and what its sections reserve.

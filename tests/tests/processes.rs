@@ -1,0 +1,252 @@
+//! The programs as processes: signals reach them, cores end with them, exit codes pass through them, cores from elsewhere join.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::sync::OnceLock;
+use std::time::{Duration, Instant};
+
+use host::arithmetic::Arithmetic;
+use host::firmware::{self, Recipe};
+use host::scene::SceneNeeds;
+use host::setup::{self, Install, Wanted};
+use serde_json::Value;
+use tempfile::TempDir;
+
+/// A picture that takes an emulated core a moment.
+const SMALL: [&str; 6] = ["--size", "64x48", "--spp", "16", "--reference", "none"];
+/// A picture that takes two emulated cores so long that something can happen to them meanwhile.
+const LONG: [&str; 8] = [
+    "--size",
+    "128x96",
+    "--spp",
+    "512",
+    "--reference",
+    "none",
+    "--cores",
+    "2",
+];
+
+/// One of the workspace's programs, built as users build it.
+fn program(name: &str) -> PathBuf {
+    static BUILT: OnceLock<PathBuf> = OnceLock::new();
+    let folder = BUILT.get_or_init(|| {
+        let mut cargo = Command::new(env!("CARGO"));
+        cargo.args([
+            "build",
+            "--quiet",
+            "--release",
+            "--package",
+            "xtask",
+            "--package",
+            "host",
+        ]);
+        let status = cargo
+            .current_dir(firmware::workspace())
+            .status()
+            .expect("cargo starts");
+        assert!(status.success(), "the programs do not build");
+        firmware::target_folder()
+            .parent()
+            .expect("it is in the target folder")
+            .join("release")
+    });
+    folder.join(name)
+}
+
+fn xtask(arguments: &[&str]) -> Command {
+    let mut command = Command::new(program("xtask"));
+    command.args(arguments).current_dir(firmware::workspace());
+    command
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped());
+    command
+}
+
+fn render(out: &Path, arguments: &[&[&str]]) -> Command {
+    let mut command = xtask(&["render"]);
+    command.args(arguments.concat()).arg("--out").arg(out);
+    command
+}
+
+fn said(output: &Output) -> String {
+    let text = [&output.stdout, &output.stderr].map(|bytes| String::from_utf8_lossy(bytes).into_owned());
+    text.concat()
+}
+
+fn report(out: &Path) -> Value {
+    let text = fs::read(out.join("report.json")).expect("a report");
+    serde_json::from_slice(&text).expect("JSON")
+}
+
+/// Renders, which must succeed, and returns the report.
+fn rendered(arguments: &[&[&str]]) -> Value {
+    let out = tempfile::tempdir().expect("a folder");
+    let output = render(out.path(), arguments).output().expect("it starts");
+    assert!(output.status.success(), "{}", said(&output));
+    report(out.path())
+}
+
+fn signal(name: &str, process: &str) {
+    let status = Command::new("kill")
+        .args(["-s", name, process])
+        .status()
+        .expect("kill starts");
+    assert!(status.success(), "there is no process {process}");
+}
+
+fn wait_for(what: &str, mut happened: impl FnMut() -> bool) {
+    let start = Instant::now();
+    while !happened() {
+        assert!(
+            start.elapsed() < Duration::from_secs(300),
+            "{what} does not happen"
+        );
+        std::thread::sleep(Duration::from_millis(20));
+    }
+}
+
+/// A long render whose two cores are at work.
+struct Running {
+    child: std::process::Child,
+    out: TempDir,
+    cores: [String; 2],
+}
+
+impl Running {
+    fn start() -> Self {
+        let out = tempfile::tempdir().expect("a folder");
+        let child = render(out.path(), &[&LONG]).spawn().expect("it starts");
+        let file = |core| out.path().join(format!("cores/core-{core}.pid"));
+        let process = |core| {
+            fs::read_to_string(file(core))
+                .unwrap_or_default()
+                .trim()
+                .to_owned()
+        };
+        wait_for("the start of the cores", || {
+            !process(0).is_empty() && !process(1).is_empty()
+        });
+        let cores = [process(0), process(1)];
+        // They boot in a few tenths of a second and then work for many.
+        std::thread::sleep(Duration::from_secs(2));
+        Self { child, out, cores }
+    }
+
+    fn end(self) -> (Output, TempDir) {
+        (self.child.wait_with_output().expect("its output"), self.out)
+    }
+}
+
+fn is_running(process: &str) -> bool {
+    let status = fs::read_to_string(format!("/proc/{process}/status")).unwrap_or_default();
+    status
+        .lines()
+        .any(|line| line.starts_with("State:") && !line.contains("zombie"))
+}
+
+#[test]
+fn cores_that_hang_end_it_too() {
+    let running = Running::start();
+    for core in &running.cores {
+        signal("STOP", core);
+    }
+    let start = Instant::now();
+    let cores = running.cores.clone();
+    let (output, _) = running.end();
+    assert!(start.elapsed() < Duration::from_secs(10));
+    assert!(
+        said(&output).contains("no core says anything any more"),
+        "{}",
+        said(&output)
+    );
+    assert!(!cores.iter().any(|core| is_running(core)));
+}
+
+#[test]
+fn an_interruption_keeps_the_picture_and_ends_the_cores() {
+    let running = Running::start();
+    signal("INT", &running.child.id().to_string());
+    let cores = running.cores.clone();
+    let (output, out) = running.end();
+    assert_eq!(output.status.code(), Some(130), "{}", said(&output));
+    assert!(out.path().join("image.png").is_file());
+    assert!(!cores.iter().any(|core| is_running(core)));
+}
+
+#[test]
+fn no_core_outlives_a_host_that_is_killed() {
+    let running = Running::start();
+    signal("KILL", &running.child.id().to_string());
+    let cores = running.cores.clone();
+    running.end();
+    wait_for("the end of the cores", || {
+        !cores.iter().any(|core| is_running(core))
+    });
+}
+
+#[test]
+fn the_collector_takes_cores_that_are_started_elsewhere() {
+    let wanted = Wanted {
+        firmware: true,
+        ..Wanted::default()
+    };
+    let toolchain = setup::ensure(wanted, Install::Forbidden)
+        .expect("it is all there")
+        .firmware
+        .expect("a toolchain");
+    let needs = SceneNeeds {
+        diffuse: true,
+        mirror: true,
+        glass: true,
+    };
+    let recipe = Recipe {
+        profile: Arithmetic::Precise,
+        needs,
+        roulette: true,
+    };
+    let image = firmware::build(&toolchain, &recipe).expect("an image");
+    let elf = image.elf.to_str().expect("UTF-8");
+    let out = tempfile::tempdir().expect("a folder");
+
+    let mut collector = Command::new(program("collector"));
+    collector
+        .args(SMALL)
+        .args(["--cores", "2", "--port", "0", "--out"])
+        .arg(out.path());
+    collector
+        .current_dir(firmware::workspace())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped());
+    let collector = collector.spawn().expect("it starts");
+    let boot = |core| out.path().join(format!("boot/core-{core}.boot"));
+    wait_for("the boot blocks", || boot(1).is_file());
+    let cores = [0, 1].map(|core| {
+        let block = boot(core);
+        xtask(&["qemu-run", elf, "--boot", block.to_str().expect("UTF-8")])
+            .spawn()
+            .expect("it starts")
+    });
+    let output = collector.wait_with_output().expect("its output");
+    assert!(output.status.success(), "{}", said(&output));
+    for core in cores {
+        let output = core.wait_with_output().expect("its output");
+        assert!(
+            output.status.success(),
+            "told to stop, a core ends well: {}",
+            said(&output)
+        );
+    }
+    let native = rendered(&[&SMALL, &["--backend", "native"]]);
+    assert_eq!(report(out.path())["image_sha256"], native["image_sha256"]);
+
+    let unbooted = xtask(&["qemu-run", elf]).output().expect("it starts");
+    assert_eq!(
+        unbooted.status.code(),
+        Some(2),
+        "the core's own exit code: {}",
+        said(&unbooted)
+    );
+    assert!(said(&unbooted).contains("bad boot block"), "{}", said(&unbooted));
+}
