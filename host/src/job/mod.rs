@@ -216,6 +216,8 @@ impl Job {
         };
         match &collection.end {
             End::Complete => {
+                // Judging takes a while and can be interrupted; the picture is not to be lost with it.
+                results.write(None)?;
                 let verdict = results.judge()?;
                 let report = results.write(Some(&verdict))?;
                 println!("{}", results.summary(&report));

@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 use std::time::Duration;
 
+use indicatif::{ProgressBar, ProgressStyle};
 use tracer::profile::{Paper, Precise};
 use tracer::unit::Termination;
 
@@ -97,7 +98,10 @@ impl Results<'_> {
             seed: REFERENCE_SEED,
         };
         eprintln!("comparing with double precision at {} samples per pixel", job.spp);
-        let (estimate, _) = cache::reference(Path::new("out/.references"), &self.job.scene, &job, |_| {})?;
+        let bar = bar("reference", job.samples());
+        let done = |samples| bar.set_position(samples);
+        let (estimate, _) = cache::reference(Path::new("out/.references"), &self.job.scene, &job, done)?;
+        bar.finish_and_clear();
         Ok(estimate)
     }
 
@@ -108,33 +112,18 @@ impl Results<'_> {
             return Ok(None);
         }
         let (blob, plan) = (&self.job.compiled.blob, options.plan());
+        let bar = bar("lockstep", self.collection.film.samples());
+        let done = |samples| bar.inc(samples);
         let rendered = match options.profile {
-            Arithmetic::Paper => lockstep::render::<Paper>(blob, &plan, |_| {}),
-            Arithmetic::Precise => lockstep::render::<Precise>(blob, &plan, |_| {}),
+            Arithmetic::Paper => lockstep::render::<Paper>(blob, &plan, done),
+            Arithmetic::Precise => lockstep::render::<Precise>(blob, &plan, done),
         };
-        // The compiler in this very program wrote the blob.
-        let Ok(oracle) = rendered else { return Ok(None) };
-        let exact = Estimate {
-            variance: None,
-            ..oracle
-        };
-        let image = self.image(None);
-        let comparison = compare(&image, &exact)?;
-        let pixels = image.picture.pixels().iter().zip(exact.picture.pixels());
-        let differences = pixels.filter_map(|(image, exact)| Some((image.as_ref()?, exact.as_ref()?)));
-        let max_abs = differences
-            .flat_map(|(image, exact)| {
-                image
-                    .iter()
-                    .zip(exact)
-                    .map(|(image, exact)| (image - exact).abs())
-            })
-            .fold(0.0, f64::max);
-        Ok(Some(LockstepError {
-            bias: comparison.bias,
-            rmse: comparison.rmse,
-            max_abs,
-        }))
+        let oracle = rendered.expect("the compiler in this very program wrote the blob");
+        bar.finish_and_clear();
+        Ok(Some(LockstepError::between(
+            &self.image(None).picture,
+            &oracle.picture,
+        )?))
     }
 
     /// Writes pictures and report.
@@ -275,18 +264,14 @@ impl Results<'_> {
                 ),
             );
         }
-        let count = |value: Option<f64>| {
-            value.map_or_else(|| "not counted".to_owned(), |value| format!("{value:.1}"))
-        };
         let cost = &report.cost;
-        line(
-            "cost",
-            format!(
-                "{} instructions and {} rays a sample",
-                count(cost.instructions_per_sample),
-                count(cost.rays_per_sample)
-            ),
-        );
+        if let Some(rays) = cost.rays_per_sample {
+            let said = match cost.instructions_per_sample {
+                Some(instructions) => format!("{instructions:.1} instructions and {rays:.2} rays a sample"),
+                None => format!("{rays:.2} rays a sample; only emulated cores count instructions"),
+            };
+            line("cost", said);
+        }
         if let Some((used, size)) = self.collection.stack() {
             line("stack", format!("at most {used} of {size} bytes used"));
         }
@@ -311,6 +296,14 @@ impl Results<'_> {
         line("sha256", report.image_sha256.clone());
         text.trim_end().to_owned()
     }
+}
+
+/// A bar for what takes the host a while; where there is no terminal it stays hidden.
+fn bar(name: &'static str, samples: u64) -> ProgressBar {
+    let style = ProgressStyle::with_template("{prefix:9} {wide_bar} {percent}% {eta} left");
+    // The template is a constant; were it wrong, the default style would still say how far it is.
+    let style = style.unwrap_or_else(|_| ProgressStyle::default_bar());
+    ProgressBar::new(samples).with_style(style).with_prefix(name)
 }
 
 fn means(report: &Report) -> String {
