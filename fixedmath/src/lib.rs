@@ -9,7 +9,7 @@
 //! | [`product`] | products with one rounding, dot products in 64 bits |
 //! | [`division`] | restoring division of 16:16 |
 //! | [`root`] | square roots: restoring, split, and by reciprocal root |
-//! | [`unit`] | directions in 2:30: normalising, first-order renormalising |
+//! | [`mod@unit`] | directions in 2:30: normalising, first-order renormalising |
 //! | [`angle`] | sine and cosine of a turn: parabolas and polynomials |
 //! | [`random`] | linear congruential generators with jump-ahead |
 //!

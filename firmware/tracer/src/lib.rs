@@ -5,7 +5,7 @@
 //! by a type. The firmware runs it over integers; the host runs the same source over `f64`, driven by the same random
 //! numbers, so that what differs between the two is arithmetic and nothing else.
 //!
-//! A [`unit`] is a pure function of scene, plan and unit id. There is no float, no allocation, no recursion and no
+//! A [`mod@unit`] is a pure function of scene, plan and unit id. There is no float, no allocation, no recursion and no
 //! `unsafe` here.
 #![no_std]
 #![forbid(unsafe_code)]
