@@ -155,6 +155,7 @@ const SOURCE: &str = "a Rust compiler with the source of its library (rust-src)"
 const LINKER: &str = "a linker for the boards (rust-lld or ld.lld)";
 const RUSTFMT: &str = "cargo fmt";
 const CLIPPY: &str = "cargo clippy";
+const FIRMWARE_CLIPPY: &str = "clippy for the compiler of the boards";
 
 /// One missing thing and where it can come from.
 struct Gap {
@@ -163,7 +164,7 @@ struct Gap {
     packages: &'static [&'static str],
 }
 
-const GAPS: [Gap; 5] = [
+const GAPS: [Gap; 6] = [
     Gap {
         name: QEMU,
         component: None,
@@ -189,6 +190,11 @@ const GAPS: [Gap; 5] = [
         component: Some("clippy"),
         packages: &["rust-web-clippy"],
     },
+    Gap {
+        name: FIRMWARE_CLIPPY,
+        component: None,
+        packages: &["rust-web-clippy"],
+    },
 ];
 
 /// Says what must be installed on a machine with these `facts` for a command that wants `wanted`.
@@ -199,7 +205,8 @@ pub fn decide(facts: &Facts, wanted: Wanted) -> Plan {
         SOURCE => wanted.firmware && with_source.is_none(),
         LINKER => wanted.firmware && facts.linker.is_none(),
         RUSTFMT => wanted.lints && !facts.rustfmt,
-        _ => wanted.lints && !facts.clippy,
+        CLIPPY => wanted.lints && !facts.clippy,
+        _ => wanted.lints && wanted.firmware && lacks_second_clippy(facts),
     };
     let gaps: Vec<&Gap> = GAPS.iter().filter(|gap| lacks(gap.name)).collect();
     if !gaps.is_empty() {
@@ -216,6 +223,15 @@ pub fn decide(facts: &Facts, wanted: Wanted) -> Plan {
         qemu: facts.qemu.clone().filter(|_| wanted.qemu),
         firmware,
     })
+}
+
+/// Whether the boards are, or will be, built by Debian's compiler beside the one in use, and that one has no clippy.
+fn lacks_second_clippy(facts: &Facts) -> bool {
+    match facts.compilers.iter().position(|compiler| compiler.has_source) {
+        Some(0) => false,
+        Some(second) => !facts.compilers[second].has_clippy,
+        None => facts.rustup == Rustup::Refused,
+    }
 }
 
 /// Chooses between rustup and Debian for every gap.
@@ -323,11 +339,11 @@ mod tests {
         assert_eq!(
             announced(&facts, ALL),
             "set-up: missing here: QEMU for Arm (qemu-system-arm); \
-             a Rust compiler with the source of its library (rust-src)\n\
+             a Rust compiler with the source of its library (rust-src); clippy for the compiler of the boards\n\
              set-up: to be installed with\n    \
              env DEBIAN_FRONTEND=noninteractive apt-get update\n    \
              env DEBIAN_FRONTEND=noninteractive apt-get install --yes --no-install-recommends \
-             qemu-system-arm rustc-web cargo-web rust-web-src"
+             qemu-system-arm rustc-web cargo-web rust-web-src rust-web-clippy"
         );
     }
 
@@ -392,13 +408,18 @@ mod tests {
         let mut facts = fresh();
         facts.qemu = Some("/usr/bin/qemu-system-arm".into());
         facts.compilers.push(compiler("/usr/bin", true));
-        let Plan::Ready(tools) = decide(&facts, ALL) else {
+        let render = Wanted { lints: false, ..ALL };
+        let Plan::Ready(tools) = decide(&facts, render) else {
             panic!("nothing is missing")
         };
         assert_eq!(
             tools.firmware.map(|toolchain| toolchain.compiler),
             Some(compiler("/usr/bin", true))
         );
+        // To lint the boards' code as well, that compiler needs a clippy of its own.
+        assert!(announced(&facts, ALL).ends_with("rust-web-clippy"));
+        facts.compilers[1].has_clippy = true;
+        assert!(matches!(decide(&facts, ALL), Plan::Ready(_)));
     }
 
     #[test]
@@ -411,7 +432,7 @@ mod tests {
         let Plan::ByHand { missing, advice } = decide(&facts, ALL) else {
             panic!("nothing can install here")
         };
-        assert_eq!(missing, [QEMU, SOURCE]);
+        assert_eq!(missing, [QEMU, SOURCE, FIRMWARE_CLIPPY]);
         assert!(
             advice.contains("not a Debian") && advice.contains("qemu-system-arm"),
             "{advice}"
