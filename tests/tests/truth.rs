@@ -7,7 +7,7 @@ use host::picture::Estimate;
 use host::reference::{self, Job};
 use host::scene::Material;
 use tracer::profile::{Paper, Precise, Profile};
-use whole_system::{cornell, estimate, plan};
+use whole_system::{cornell, estimate, film, plan};
 
 fn reference(width: u16, height: u16, spp: u32) -> Estimate {
     let job = Job {
@@ -109,3 +109,17 @@ fn precise_follows_the_paths_of_its_double() {
         100.0 * share
     );
 }
+
+/// The bytes themselves, for every board and host alike. A change that means to alter them says so in the changelog and
+/// puts the new ones here, as this test prints them.
+#[test]
+fn pictures_are_the_golden_ones_to_the_bit() {
+    let precise = film::<Precise>(&cornell(), &plan::<Precise>(64, 48, 16)).sha256();
+    let paper = film::<Paper>(&cornell(), &plan::<Paper>(32, 24, 8)).sha256();
+    assert_eq!([precise.as_str(), paper.as_str()], GOLDEN);
+}
+
+const GOLDEN: [&str; 2] = [
+    "cd4153fd5061c710ce169ab6126542456565e368f930af9e5a0af5b1183f2002",
+    "3e19da610219518bcf7fa47fba4fc0a658556deb181bfb8137694b8444a3d114",
+];

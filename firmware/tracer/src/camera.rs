@@ -1,8 +1,8 @@
 //! The camera: where a sample's first ray starts.
 
-use crate::intersect::Ray;
 use crate::numbers::Numbers;
 use crate::random::Random;
+use crate::ray::Ray;
 
 /// One direction across the film.
 #[derive(Clone, Copy, Debug)]

@@ -2,12 +2,14 @@
 
 use core::marker::PhantomData;
 
-use crate::intersect::{Intersection, Ray};
+use crate::intersect::Intersection;
 use crate::material::{Bsdf, Diffuse, mirrored};
 use crate::numbers::Numbers;
 use crate::profile::Profile;
 use crate::random::Random;
+use crate::ray::Ray;
 use crate::scene::{Needs, Scene};
+use crate::sphere::Sphere;
 use crate::vector;
 
 /// Bounces before roulette may end a path.
@@ -102,7 +104,7 @@ impl<'s, P: Profile, F: Needs> Path<'s, P, F> {
     /// What is left of each channel after bounce `bounces`, or `None` where the path ends there.
     fn share(
         &self,
-        sphere: &crate::scene::Sphere<P::Numbers>,
+        sphere: &Sphere<P::Numbers>,
         bounces: u32,
         random: &mut P::Random,
     ) -> Option<[<P::Numbers as Numbers>::Weight; 3]> {

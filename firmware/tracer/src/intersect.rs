@@ -1,28 +1,10 @@
 //! Where a ray meets the nearest sphere.
 
-use core::ptr;
-
 use crate::numbers::Numbers;
-use crate::scene::{Scene, Sphere};
+use crate::ray::Ray;
+use crate::scene::Scene;
+use crate::sphere::Sphere;
 use crate::vector;
-
-/// A half-line, and the surface it starts from.
-#[derive(Clone, Copy, Debug)]
-pub struct Ray<'s, N: Numbers> {
-    /// Where it starts.
-    pub origin: [N::Length; 3],
-    /// Where it goes: a unit vector.
-    pub direction: [N::Unit; 3],
-    /// The sphere it starts on.
-    pub leaves: Option<&'s Sphere<N>>,
-}
-
-impl<N: Numbers> Ray<'_, N> {
-    #[inline]
-    fn leaves(&self, sphere: &Sphere<N>) -> bool {
-        self.leaves.is_some_and(|leaves| ptr::eq(leaves, sphere))
-    }
-}
 
 /// A point on a sphere.
 #[derive(Clone, Copy, Debug)]

@@ -17,6 +17,8 @@ pub mod material;
 pub mod numbers;
 pub mod profile;
 pub mod random;
+pub mod ray;
 pub mod scene;
+pub mod sphere;
 pub mod unit;
 pub mod vector;

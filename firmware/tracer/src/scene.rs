@@ -7,6 +7,7 @@ pub use blob::{BlobError, CameraRecord, HEADER_BYTES, Header, MaterialRecord, SP
 use crate::camera::{Axis, Camera};
 use crate::material::{Bsdf, Dielectric, Surface};
 use crate::numbers::Numbers;
+use crate::sphere::Sphere;
 
 /// Spheres in a scene, at most: what a core's data memory holds beside its stacks.
 pub const MAX_SPHERES: usize = 64;
@@ -32,23 +33,6 @@ impl Needs for All {
     const MIRROR: bool = true;
     const GLASS: bool = true;
     const ROULETTE: bool = true;
-}
-
-/// A sphere.
-#[derive(Clone, Copy, Debug)]
-pub struct Sphere<N: Numbers> {
-    /// Centre.
-    pub centre: [N::Length; 3],
-    /// Radius squared.
-    pub square: N::Square,
-    /// Radius.
-    pub radius: N::Length,
-    /// What divides by the radius.
-    pub reciprocal: N::Reciprocal,
-    /// Whether it is seen from inside, everything outside being solid.
-    pub hollow: bool,
-    /// Its surface.
-    pub surface: Surface<N>,
 }
 
 /// A scene in the formats of `N`.

@@ -4,11 +4,12 @@ mod support;
 
 use fixedmath::{I2F30, I16F16};
 use support::{GLASS, blob, sphere};
-use tracer::intersect::{Intersection, Power, Ray, Textbook};
+use tracer::intersect::{Intersection, Power, Textbook};
 use tracer::material::{Basis, Diffuse, Offset};
 use tracer::numbers::{Mixed, Numbers, Published};
 use tracer::profile::{Paper, Precise, Profile};
 use tracer::random::{FullState, LowBits, Random};
+use tracer::ray::Ray;
 use tracer::scene::{All, MaterialRecord, Scene};
 use tracer::unit::{Plan, RUN, Sums, Termination, render};
 
