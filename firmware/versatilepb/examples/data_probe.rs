@@ -8,8 +8,8 @@ use core::hint::black_box;
 
 use versatilepb::semihosting::{Exit, exit};
 
-/// Words that are may change, and so take up data memory.
-static mut TOO_MUCH: [u32; 5 * 1024] = [0; 5 * 1024];
+/// Three quarters of data memory: it fits by itself, but not with the stacks.
+static mut TOO_MUCH: [u32; 12 * 1024] = [0; 12 * 1024];
 
 #[aarch32_rt::entry]
 fn start() -> ! {
