@@ -43,17 +43,16 @@ const fn stretched(component: i32, inverse: i32) -> I2F30 {
     I2F30::from_bits(((component as i64 * inverse as i64 + (1 << 30)) >> 31) as i32)
 }
 
-/// A vector whose length is 1 + e brought to length 1 - 3/2 e^2: one Newton step, no root.
+/// A vector whose length is 1 + e brought to length 1 - 3/2 e^2 - 1/2 e^3: one Newton step, no root.
 ///
-/// For directions that rounding has moved off the sphere; e must lie within 2^-3 of 0, and components within [-1.25, 1.25].
+/// For directions that rounding has moved off the sphere. The step shortens what is longer than sqrt(3) to nothing: such
+/// a vector gives 0.
 #[inline]
 pub const fn renormalised(v: [I2F30; 3]) -> [I2F30; 3] {
     let [x, y, z] = [v[0].to_bits(), v[1].to_bits(), v[2].to_bits()];
-    let square = (x as i64 * x as i64)
-        .wrapping_add(y as i64 * y as i64)
-        .wrapping_add(z as i64 * z as i64);
+    let square = (x as i64 * x as i64) as u64 + (y as i64 * y as i64) as u64 + (z as i64 * z as i64) as u64;
     // (3 - |v|^2) / 2 in 2:30.
-    let factor = ((3i64 << 60).wrapping_sub(square) >> 31) as i32;
+    let factor = ((3u64 << 60).saturating_sub(square) >> 31) as i32;
     [corrected(x, factor), corrected(y, factor), corrected(z, factor)]
 }
 

@@ -96,3 +96,15 @@ fn renormalising_squares_the_error_away() {
         );
     }
 }
+
+#[test]
+fn renormalising_the_longest_and_the_zero_vector() {
+    for v in [
+        [I2F30::MIN; 3],
+        [I2F30::MAX; 3],
+        [I2F30::ONE; 3],
+        [I2F30::ZERO; 3],
+    ] {
+        assert_eq!(unit::renormalised(v), [I2F30::ZERO; 3], "{v:?}");
+    }
+}

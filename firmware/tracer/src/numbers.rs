@@ -12,9 +12,9 @@ use core::ops::{Add, Neg, Sub};
 /// A set of number formats.
 ///
 /// Constructors take the scene blob's formats (16:16, 2:30, 4:28, 32:32), so one blob serves every profile and the
-/// double-precision oracle. Ranges are the scene compiler's to guarantee: no point a ray can reach lies
-/// 2^15 / 3 or more from a sphere's centre, nor is any radius longer, so that neither a length nor the difference of a
-/// distance and a projection leaves 16:16, and no square leaves 32:32.
+/// double-precision oracle. Ranges are the scene compiler's to guarantee: no ray starts 2^15 / 3 or more from the centre of
+/// a hollow sphere, or twice that from any other, and no hollow or glass sphere's radius reaches 2^15 / 3. Then neither a
+/// length nor the difference of a distance and a projection leaves 16:16, and no square leaves 32:32.
 pub trait Numbers: Copy + Debug + 'static {
     /// Positions and distances.
     type Length: Copy + Debug + PartialOrd + Add<Output = Self::Length> + Sub<Output = Self::Length>;
@@ -29,7 +29,7 @@ pub trait Numbers: Copy + Debug + 'static {
     type Square: Copy + Debug + PartialOrd + Add<Output = Self::Square> + Sub<Output = Self::Square>;
     /// A length along a direction before it is rounded.
     type Projection: Copy + Debug;
-    /// Ratios of refractive indices and their squares: up to 16 with an index of 4 at most, but only seen next to 1.
+    /// Ratios of refractive indices, up to 4, and their squares.
     type Ratio: Copy + Debug + PartialOrd + Add<Output = Self::Ratio> + Sub<Output = Self::Ratio>;
     /// Throughput and reflectance: [0, 1].
     type Weight: Copy + Debug;

@@ -34,35 +34,20 @@ pub(super) struct Results<'a> {
 
 /// How wrong the picture is.
 pub(super) struct Verdict {
+    /// The picture with its noise.
+    image: Estimate,
     /// With what it was compared, and how that went; none without a reference.
     against: Option<(Estimate, Comparison)>,
     lockstep: Option<LockstepError>,
 }
 
 impl Results<'_> {
-    /// The collected picture, with as much noise as the reference has in as many samples.
-    fn image(&self, reference: Option<&Estimate>) -> Estimate {
-        let spp = self.job.options.spp;
-        // Cores send sums and no squares. The reference estimates the same pixels from the same distribution, so its
-        // noise, for as many samples, is the picture's. In the stochastic order a pixel's samples are not known before.
-        let evenly_sampled =
-            self.collection.end == End::Complete && self.job.options.pixels != Pixels::Stochastic;
-        let scale = reference
-            .and_then(|reference| reference.spp)
-            .map(|known| f64::from(known) / f64::from(spp));
-        let variance = match (reference.and_then(|reference| reference.variance.as_ref()), scale) {
-            (Some(known), Some(scale)) if evenly_sampled => Some(
-                known
-                    .iter()
-                    .map(|pixel| pixel.map(|variance| variance * scale))
-                    .collect(),
-            ),
-            _ => None,
-        };
+    /// The collected picture, and the variance of its pixels where it is known.
+    fn image(&self, variance: Option<Vec<[f64; 3]>>) -> Estimate {
         Estimate {
             picture: self.collection.film.picture(),
             variance,
-            spp: Some(spp),
+            spp: Some(self.job.options.spp),
         }
     }
 
@@ -70,6 +55,7 @@ impl Results<'_> {
     pub(super) fn judge(&self) -> Result<Verdict, JobError> {
         if self.job.options.reference == Some(Reference::None) {
             return Ok(Verdict {
+                image: self.image(None),
                 against: None,
                 lockstep: None,
             });
@@ -78,10 +64,15 @@ impl Results<'_> {
             Some(given) => given.clone(),
             None => self.computed_reference()?,
         };
-        let comparison = compare(&self.image(Some(&reference)), &reference)?;
+        // Cores send sums and no squares. The oracle walks the same paths, so its noise is the picture's.
+        let oracle = self.oracle();
+        let image = self.image(oracle.as_ref().and_then(|oracle| oracle.variance.clone()));
+        let lockstep = oracle.map(|oracle| LockstepError::between(&image.picture, &oracle.picture));
+        let comparison = compare(&image, &reference)?;
         Ok(Verdict {
+            image,
             against: Some((reference, comparison)),
-            lockstep: self.lockstep()?,
+            lockstep: lockstep.transpose()?,
         })
     }
 
@@ -105,11 +96,11 @@ impl Results<'_> {
         Ok(estimate)
     }
 
-    /// How far arithmetic alone took the picture. Not for the stochastic order, whose samples are others each time.
-    fn lockstep(&self) -> Result<Option<LockstepError>, JobError> {
+    /// The same samples in exact arithmetic. Not for the stochastic order, whose samples are others each time.
+    fn oracle(&self) -> Option<Estimate> {
         let options = &self.job.options;
         if options.pixels == Pixels::Stochastic {
-            return Ok(None);
+            return None;
         }
         let (blob, plan) = (&self.job.compiled.blob, options.plan());
         let bar = bar("lockstep", self.collection.film.samples());
@@ -118,19 +109,15 @@ impl Results<'_> {
             Arithmetic::Paper => lockstep::render::<Paper>(blob, &plan, done),
             Arithmetic::Precise => lockstep::render::<Precise>(blob, &plan, done),
         };
-        let oracle = rendered.expect("the compiler in this very program wrote the blob");
         bar.finish_and_clear();
-        Ok(Some(LockstepError::between(
-            &self.image(None).picture,
-            &oracle.picture,
-        )?))
+        Some(rendered.expect("the compiler in this very program wrote the blob"))
     }
 
     /// Writes pictures and report.
     pub(super) fn write(&self, verdict: Option<&Verdict>) -> Result<Report, JobError> {
         let out = &self.job.out;
         let against = verdict.and_then(|verdict| verdict.against.as_ref());
-        let image = self.image(against.map(|(reference, _)| reference));
+        let image = verdict.map_or_else(|| self.image(None), |verdict| verdict.image.clone());
         image.picture.write_png(&out.join("image.png"))?;
         openexr::write(&out.join("image.exr"), &image)?;
         if let Some((reference, comparison)) = against {

@@ -333,8 +333,15 @@ fn extents_beyond_the_reach() {
     let open = GOOD
         .replace("hollow = true\n", "")
         .replace("radius = 20\n", "radius = 2\n");
-    let found = messages(&open.replace("centre = [0, 0, -5]", "centre = [11000, 0, -5]"));
-    assert!(found.iter().any(|message| message.contains(reach)), "{found:?}");
+    let apart = |x: &str| open.replace("centre = [0, 0, -5]", &format!("centre = [{x}, 0, -5]"));
+    assert!(Scene::parse("test.toml", &apart("21800")).is_ok());
+    let found = messages(&apart("21850"));
+    assert!(
+        found
+            .iter()
+            .any(|message| message.contains("beyond the tracer's reach (21844)")),
+        "{found:?}"
+    );
 }
 
 #[test]

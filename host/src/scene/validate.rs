@@ -1,7 +1,7 @@
 //! How the parts of a scene fit together: names, light, extent, and free space in front of the camera.
 
 use super::parse::{Draft, Source};
-use super::{Camera, REACH, Sphere};
+use super::{Camera, Material, REACH, Sphere};
 
 /// Notes every fault of `draft`.
 pub(super) fn validate(draft: &Draft, source: &mut Source<'_>) {
@@ -47,46 +47,46 @@ fn something_shines(draft: &Draft, source: &mut Source<'_>) {
 /// the first ray.)
 fn distances_fit(draft: &Draft, source: &mut Source<'_>) {
     let spheres: Vec<&Sphere> = draft.spheres.iter().map(|placed| &placed.sphere).collect();
-    let region = reachable(&spheres);
     for placed in &draft.spheres {
-        let sphere = &placed.sphere;
-        // Within a hollow sphere nothing is further than its radius from its centre; the box around it is coarser.
-        let from_rooms = spheres
-            .iter()
-            .filter(|room| room.hollow)
-            .map(|room| length(sub(sphere.centre, room.centre)) + room.radius);
-        let farthest = from_rooms.fold(farthest_corner(region, sphere.centre), f64::min);
-        if farthest >= REACH {
+        let (sphere, limit) = (&placed.sphere, reach(&placed.sphere));
+        let farthest = farthest_start(&spheres, sphere.centre);
+        if farthest >= limit {
             let name = &sphere.name;
             let cause = format!("a ray may start {farthest:.0} from the centre of \"{name}\"");
-            let message = format!("{cause}, beyond the tracer's reach ({REACH}); make the scene smaller");
+            let message = format!("{cause}, beyond the tracer's reach ({limit}); make the scene smaller");
+            source.fault(placed.at, message);
+        }
+        // Within glass a ray goes from one side to the other.
+        if matches!(sphere.material, Material::Glass { .. }) && sphere.radius >= REACH {
+            let message =
+                format!("glass of this radius is beyond the tracer's reach ({REACH}); make it smaller");
             source.fault(placed.at, message);
         }
     }
 }
 
-/// The box, as lowest and highest corner, that holds every surface a ray can meet: what all hollow spheres have in
-/// common, or everything there is.
-fn reachable(spheres: &[&Sphere]) -> [[f64; 3]; 2] {
-    let hollow = spheres.iter().any(|sphere| sphere.hollow);
-    let mut boxes = spheres
-        .iter()
-        .filter(|sphere| sphere.hollow == hollow)
-        .map(|sphere| [-1.0, 1.0].map(|side| sphere.centre.map(|c| c + side * sphere.radius)));
-    let first = boxes.next().unwrap_or_default();
-    boxes.fold(first, |[low, high], [other_low, other_high]| {
-        let lowest = [0, 1, 2].map(|i| low[i].min(other_low[i]));
-        let highest = [0, 1, 2].map(|i| high[i].max(other_high[i]));
-        let common = [
-            [0, 1, 2].map(|i| low[i].max(other_low[i])),
-            [0, 1, 2].map(|i| high[i].min(other_high[i])),
-        ];
-        if hollow { common } else { [lowest, highest] }
-    })
+/// How far from its centre a ray may start.
+fn reach(sphere: &Sphere) -> f64 {
+    if sphere.hollow { REACH } else { 2.0 * REACH }
 }
 
-fn farthest_corner([low, high]: [[f64; 3]; 2], from: [f64; 3]) -> f64 {
-    length([0, 1, 2].map(|i| (from[i] - low[i]).abs().max((from[i] - high[i]).abs())))
+/// The greatest distance from `point` to where a ray can start, or a bound on it. In a room, what all hollow spheres have
+/// in common, that is its furthest point, and elsewhere the far side of some sphere.
+fn farthest_start(spheres: &[&Sphere], point: [f64; 3]) -> f64 {
+    let far_side = |sphere: &&Sphere| length(sub(point, sphere.centre)) + sphere.radius;
+    let mut rooms = spheres.iter().copied().filter(|sphere| sphere.hollow).peekable();
+    if rooms.peek().is_none() {
+        return spheres.iter().map(far_side).fold(0.0, f64::max);
+    }
+    // Two bounds: each room's far side, and the corners of the box that all of them have in common.
+    let (mut nearest, mut low, mut high) = (f64::INFINITY, [f64::NEG_INFINITY; 3], [f64::INFINITY; 3]);
+    for room in rooms {
+        nearest = nearest.min(far_side(&room));
+        low = [0, 1, 2].map(|i| low[i].max(room.centre[i] - room.radius));
+        high = [0, 1, 2].map(|i| high[i].min(room.centre[i] + room.radius));
+    }
+    let corner = [0, 1, 2].map(|i| (point[i] - low[i]).abs().max((point[i] - high[i]).abs()));
+    nearest.min(length(corner))
 }
 
 fn directions_differ(draft: &Draft, source: &mut Source<'_>) {
@@ -110,9 +110,10 @@ fn camera_is_in_free_space(draft: &Draft, source: &mut Source<'_>) {
                 source.line(at)
             ),
             Blocked::TooFar(sphere, at) => format!(
-                "the {place} ray starts too far from the centre of sphere \"{}\" (line {}), beyond the tracer's reach ({REACH}); move the camera nearer",
+                "the {place} ray starts too far from the centre of sphere \"{}\" (line {}), beyond the tracer's reach ({}); move the camera nearer",
                 sphere.name,
-                source.line(at)
+                source.line(at),
+                reach(sphere)
             ),
         };
         source.fault(draft.camera_at, message);
@@ -137,7 +138,7 @@ pub(super) fn first_blocked_ray<'s, T>(
         .find_map(|(place, start)| {
             spheres.clone().find_map(|(sphere, tag)| {
                 let distance = length(sub(start, sphere.centre));
-                if distance >= REACH {
+                if distance >= reach(sphere) {
                     Some((place, Blocked::TooFar(sphere, tag)))
                 } else if (distance < sphere.radius) != sphere.hollow {
                     Some((place, Blocked::Inside(sphere, tag)))

@@ -16,7 +16,7 @@ pub struct Reciprocal {
     shift: u8,
 }
 
-/// 2^60 and 2^30: 1 in the formats that products of directions pass through.
+/// 1 as a product of two direction components, 4:60.
 const ONE_SQUARED: u64 = 1 << 60;
 
 fn bits(v: [I2F30; 3]) -> [i64; 3] {
