@@ -5,11 +5,15 @@
 use host::compare::{Comparison, compare};
 use host::picture::Estimate;
 use host::reference::{self, Job};
-use host::scene::Material;
+use host::scene::{Material, Scene};
 use tracer::profile::{Paper, Precise, Profile};
-use whole_system::{cornell, estimate, film, plan};
+use whole_system::{cornell, estimate, film, plan, repository};
 
 fn reference(width: u16, height: u16, spp: u32) -> Estimate {
+    reference_of(&cornell(), width, height, spp)
+}
+
+fn reference_of(scene: &Scene, width: u16, height: u16, spp: u32) -> Estimate {
     let job = Job {
         width,
         height,
@@ -17,7 +21,7 @@ fn reference(width: u16, height: u16, spp: u32) -> Estimate {
         termination: reference::Termination::Roulette,
         seed: 1,
     };
-    reference::render(&cornell(), &job, |_| ())
+    reference::render(scene, &job, |_| ())
 }
 
 fn grey(mean: [f64; 3]) -> f64 {
@@ -60,6 +64,18 @@ fn no_tile_of_precise_is_further_off_than_chance_allows() {
     let found = compare(&precise, &reference).unwrap();
     show("precise", &found);
     assert_eq!(found.tiles.failed().count(), 0);
+}
+
+#[test]
+fn no_tile_is_off_in_scenes_of_other_kinds() {
+    for name in ["open", "tiny", "mirrors"] {
+        let scene = Scene::load(&repository(&format!("tests/scenes/{name}.toml"))).unwrap();
+        let reference = reference_of(&scene, 64, 48, 1024);
+        let (precise, _) = estimate::<Precise>(&scene, &plan::<Precise>(64, 48, 1024));
+        let found = compare(&precise, &reference).unwrap();
+        show(name, &found);
+        assert_eq!(found.tiles.failed().count(), 0, "{name}");
+    }
 }
 
 /// Proof that the tile test can fail: the glass ball gets an index of 1.3 instead of 1.5, which moves its caustic and
