@@ -51,8 +51,12 @@ const fn stretched(component: i32, inverse: i32) -> I2F30 {
 pub const fn renormalised(v: [I2F30; 3]) -> [I2F30; 3] {
     let [x, y, z] = [v[0].to_bits(), v[1].to_bits(), v[2].to_bits()];
     let square = (x as i64 * x as i64) as u64 + (y as i64 * y as i64) as u64 + (z as i64 * z as i64) as u64;
-    // (3 - |v|^2) / 2 in 2:30.
-    let factor = ((3u64 << 60).saturating_sub(square) >> 31) as i32;
+    // (3 - |v|^2) / 2 in 2:30; the upper word alone tells whether that is negative.
+    let factor = if (square >> 32) as u32 >= 3 << 28 {
+        0
+    } else {
+        (((3 << 60) - square) >> 31) as i32
+    };
     [corrected(x, factor), corrected(y, factor), corrected(z, factor)]
 }
 

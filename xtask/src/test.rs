@@ -38,8 +38,9 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
     step("firmware lints", || lint_firmware(&toolchain, &scene))?;
     // With overflow checks and debug assertions, where arithmetic could wrap or panic in one build and not in the other.
     step("tests, checked build", || {
-        succeed(cargo(&[
+        shown(cargo(&[
             "test",
+            "--quiet",
             "--package",
             "fixedmath",
             "--package",
@@ -51,8 +52,9 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
         ]))
     })?;
     step("tests, release build", || {
-        succeed(cargo(&[
+        shown(cargo(&[
             "test",
+            "--quiet",
             "--release",
             "--workspace",
             "--exclude",
@@ -64,7 +66,13 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
     let rows = step("firmware", || size::measure(&toolchain, &scene))?;
     println!("{}", size::table(&rows));
     step("whole system", || {
-        succeed(cargo(&["test", "--release", "--package", "whole-system"]))
+        shown(cargo(&[
+            "test",
+            "--quiet",
+            "--release",
+            "--package",
+            "whole-system",
+        ]))
     })?;
     step("documentation", || {
         let mut command = cargo(&["doc", "--no-deps"]);
@@ -102,6 +110,19 @@ fn step<T>(name: &str, action: impl FnOnce() -> anyhow::Result<T>) -> anyhow::Re
     let done = action().with_context(|| format!("{name} failed"))?;
     println!("{name}: passed in {}", seconds(start.elapsed()));
     Ok(done)
+}
+
+/// Runs a command that speaks for itself.
+fn shown(mut command: Command) -> anyhow::Result<()> {
+    let program = Path::new(command.get_program()).display().to_string();
+    let status = command
+        .stdin(Stdio::null())
+        .status()
+        .with_context(|| format!("cannot start {program}"))?;
+    if !status.success() {
+        bail!("{command:?} ended with {status}");
+    }
+    Ok(())
 }
 
 /// Runs a command; what it says is shown only if it fails.
