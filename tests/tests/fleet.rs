@@ -12,6 +12,7 @@ use std::time::{Duration, Instant};
 use clap::Parser;
 use host::job::options::RenderOptions;
 use host::job::{JobError, render};
+use host::scene::{MAX_SPHERES, Scene};
 use serde_json::Value;
 use tempfile::TempDir;
 use tracer::profile::{Paper, Precise};
@@ -92,8 +93,12 @@ fn process_of(out: &Path, core: usize) -> String {
     }
 }
 
+/// By the shell's own `kill`: the program of that name is not on every machine.
 fn kill(process: &str) {
-    let status = Command::new("kill").args(["-KILL", process]).status().unwrap();
+    let status = Command::new("sh")
+        .args(["-c", "kill -KILL \"$1\"", "sh", process])
+        .status()
+        .unwrap();
     assert!(status.success(), "kill {process}");
 }
 
@@ -128,6 +133,33 @@ fn paper_runs_on_the_emulated_core_as_on_the_host() {
 fn odd_sizes_and_last_passes_are_covered() {
     let expected = film::<Precise>(&cornell(), &plan::<Precise>(33, 25, 68)).sha256();
     assert_eq!(plain("--size 33x25 --spp 68 --cores 2").sha256(), expected);
+}
+
+/// As many spheres as a scene may have: boot block, decoded scene and stack have room for them.
+#[test]
+fn the_largest_scene_fits_a_core() {
+    let mut text = String::from(
+        "format = 1\n[camera]\nposition = [0, 0, 30]\ndirection = [0, 0, -1]\nplane_height = 0.8\n",
+    );
+    text += "[[sphere]]\nname = \"room\"\nhollow = true\ncentre = [0, 0, 0]\nradius = 50\nemission = [1, 1, 1]\ndiffuse = [0.5, 0.5, 0.5]\n";
+    for i in 0..63 {
+        let (x, y) = (f64::from(i % 9) * 2.5 - 10.0, f64::from(i / 9) * 2.5 - 7.5);
+        text += &format!(
+            "[[sphere]]\nname = \"ball {i}\"\ncentre = [{x}, {y}, 0]\nradius = 1.2\ndiffuse = [0.3, 0.6, 0.9]\n"
+        );
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("many.toml");
+    std::fs::write(&file, &text).unwrap();
+    let scene = Scene::load(&file).unwrap();
+    assert_eq!(scene.spheres.len(), MAX_SPHERES);
+    let expected = film::<Precise>(&scene, &plan::<Precise>(32, 24, 8)).sha256();
+    let words = "render --size 32x24 --spp 8 --reference none --cores 1 --out";
+    let words = words
+        .split(' ')
+        .chain([folder.path().to_str().unwrap(), file.to_str().unwrap()]);
+    render(&Flags::parse_from(words).options, &AtomicBool::new(false)).unwrap();
+    assert_eq!(read_report(folder.path())["image_sha256"], expected);
 }
 
 #[test]

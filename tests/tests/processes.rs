@@ -88,11 +88,12 @@ fn rendered(arguments: &[&[&str]]) -> Value {
     report(out.path())
 }
 
+/// By the shell's own `kill`: the program of that name is not on every machine.
 fn signal(name: &str, process: &str) {
-    let status = Command::new("kill")
-        .args(["-s", name, process])
+    let status = Command::new("sh")
+        .args(["-c", "kill -s \"$1\" \"$2\"", "sh", name, process])
         .status()
-        .expect("kill starts");
+        .expect("sh starts");
     assert!(status.success(), "there is no process {process}");
 }
 
