@@ -4,8 +4,8 @@
 //! `sqrt(x y) = sqrt(x) sqrt(y)` with `y` a power of four, which keeps as many significant bits of the argument as 16:16
 //! has room for and no more.
 //!
-//! Ours ([`of_square`], [`of_length`], [`of_fraction`]) are correctly rounded and take a third of the time: the argument
-//! is shifted until it fills 64 bits, a line from a 24-entry table gives its reciprocal root to 2^-10, one Newton step
+//! Ours ([`of_square`], [`of_length`], [`of_fraction`]) are correctly rounded: the argument is
+//! shifted until it fills 64 bits, a line from a 24-entry table gives its reciprocal root to 2^-10, one Newton step
 //! to 2^-19, and the remainder of the root this gives, which is exact in integers, mends the root to its last bit.
 
 use fixed::types::{I2F30, I16F16, I32F32, I48F16};

@@ -1,4 +1,9 @@
-//! Stub.
+//! The host side: what a scene becomes, what runs it, and what is made of the pixels that come back.
+//!
+//! In the order of a render: [`scene`] reads and compiles, [`setup`] and [`firmware`] build the image, [`fleet`] starts the
+//! cores of a [`session`], [`collector`] gathers their pixels on a [`film`], [`reference`](mod@reference) and [`lockstep`] say what
+//! they should have been, [`compare`] and [`difference`] how far off they are, and [`report`] writes it down. [`job`] is
+//! all of that in one call.
 
 pub mod arithmetic;
 pub mod collector;

@@ -18,7 +18,7 @@ pub const ROULETTE_FROM: u32 = 5;
 /// When a path ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Termination {
-    /// By Russian roulette, from the fifth bounce on.
+    /// By Russian roulette, once it has bounced five times.
     Roulette,
     /// At this many surfaces.
     Depth(u8),

@@ -30,7 +30,7 @@ pub trait Numbers: Copy + Debug + 'static {
     /// A length along a direction before it is rounded.
     type Projection: Copy + Debug;
     /// Ratios of refractive indices, up to 4, and their squares.
-    type Ratio: Copy + Debug + PartialOrd + Add<Output = Self::Ratio> + Sub<Output = Self::Ratio>;
+    type Ratio: Copy + Debug;
     /// Throughput and reflectance: [0, 1].
     type Weight: Copy + Debug;
     /// Radiance of one sample, and sums of it.

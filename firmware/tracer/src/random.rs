@@ -11,8 +11,9 @@ pub trait Random {
     fn fraction(&mut self) -> u32;
 }
 
-/// 2^64 over the golden ratio, made odd. Multiples of it by 0, 1, 2, ... keep as far apart as any sequence can: the
-/// first `n` are at least 2^64 / (2.24 n) steps from each other, 10^9 for 2^32 units, which draw far fewer.
+/// 2^64 over the golden ratio, rounded down. Multiples of it by 0, 1, 2, ... keep as far apart as any sequence can: the
+/// first `n` are at least 2^64 / (2.63 n) steps from each other up to n = 2^31. From there on the rounding shows, and 2^32
+/// units are 5e7 steps apart at the least, far more than the 1,024 samples of a usual unit draw.
 const STRIDE: u64 = 0x9e37_79b9_7f4a_7c15;
 
 /// Spreads a seed over all bits (the finaliser of D. Stafford's variant 13, as in SplitMix64), so that seeds 1 and 2
@@ -54,5 +55,34 @@ impl Random for LowBits {
     #[inline]
     fn fraction(&mut self) -> u32 {
         u32::from(self.0.low_bits()) << 16
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::STRIDE;
+
+    /// Streams `k` ids apart are `k STRIDE` steps apart, one way or the other round the period.
+    fn apart(k: u64) -> u64 {
+        let steps = k.wrapping_mul(STRIDE);
+        steps.min(steps.wrapping_neg())
+    }
+
+    /// The multiples that come closest to a whole period are the denominators of the convergents of STRIDE / 2^64: the
+    /// Fibonacci numbers up to 1,134,903,170, and then, where the rounding shows, 2,971,215,073.
+    #[test]
+    fn streams_keep_their_distance() {
+        let (mut k, mut next) = (1u64, 2u64);
+        while k <= 1_134_903_170 {
+            assert!(apart(k) as f64 >= 2f64.powi(64) / 2.63 / k as f64, "{k}");
+            (k, next) = (next, k + next);
+        }
+        let closest = (1..1_000_000).map(apart).min();
+        assert_eq!(
+            closest,
+            Some(apart(832_040)),
+            "the largest Fibonacci number below a million"
+        );
+        assert!(apart(2_971_215_073) > 50_000_000, "the closest of all 2^32");
     }
 }

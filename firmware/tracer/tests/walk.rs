@@ -264,7 +264,7 @@ fn units_cover_every_sample_once() {
 
 #[test]
 fn streams_of_units_do_not_overlap() {
-    // What a unit of 64 x 16 paths could draw at the very most, against the stride between neighbours.
+    // That they cannot is arithmetic (tracer::random); that the stride is really taken is seen here.
     let first: Vec<u32> = {
         let mut r = FullState::for_unit(5, 0);
         (0..1000).map(|_| r.fraction()).collect()

@@ -1,5 +1,4 @@
 //! Scenes made by hand, for tests that must not lean on the host's compiler.
-#![allow(dead_code, reason = "each test binary uses its own part")]
 
 use tracer::scene::{CameraRecord, Header, MaterialRecord, SphereRecord};
 
