@@ -1,4 +1,9 @@
 //! Division of 16:16 numbers.
+//!
+//! [`restoring`] is the published one, a bit a step. Ours take the divisor's reciprocal instead: the divisor is
+//! shifted until it fills its word, a line from a 32-entry table gives the reciprocal to 2^-12 from below, and one step
+//! of third order, `r (1 + e + e^2)` with `e = 1 - d r`, brings it to the word's last bit. A quotient made of it is at
+//! most one too small, which its remainder tells.
 
 use fixed::types::I16F16;
 
@@ -53,4 +58,157 @@ const fn restoring_bits(mut remainder: u32, mut low: u32, divisor: u32) -> u32 {
         bit += 1;
     }
     quotient
+}
+
+/// `a / b` to the nearest, halves away from zero: within 0.5 ulp.
+///
+/// A quotient that does not fit saturates; a zero divisor gives the end of the range on the dividend's side, and
+/// 0 / 0 is 0.
+///
+/// ```
+/// use fixedmath::{division, I16F16};
+/// let (two, three) = (I16F16::from_num(2), I16F16::from_num(3));
+/// assert_eq!(division::nearest(two, three), I16F16::from_bits(43691));
+/// assert_eq!(division::nearest(-two, I16F16::ZERO), I16F16::MIN);
+/// assert_eq!(division::nearest(I16F16::MIN, -I16F16::ONE), I16F16::MAX);
+/// ```
+#[inline]
+pub const fn nearest(a: I16F16, b: I16F16) -> I16F16 {
+    let sign = (a.to_bits() ^ b.to_bits()) >> 31;
+    let (dividend, divisor) = (a.to_bits().unsigned_abs(), b.to_bits().unsigned_abs());
+    // 2^31 ulp or more, or no quotient at all. None is rounded up to 2^31: that would take a dividend beyond 2^31.
+    if dividend >> 15 >= divisor {
+        return beyond(a, sign);
+    }
+    signed(quotient(dividend, divisor), sign)
+}
+
+/// `1 / x` to the nearest, halves away from zero: within 0.5 ulp.
+///
+/// Saturates for 0, which counts as positive, and for 1 and 2 ulp; the reciprocal of -1 ulp is `MIN`, that of -2 ulp too.
+///
+/// ```
+/// use fixedmath::{division, I16F16};
+/// assert_eq!(division::reciprocal(I16F16::from_num(-3)), I16F16::from_bits(-21845));
+/// ```
+#[inline]
+pub const fn reciprocal(x: I16F16) -> I16F16 {
+    let sign = x.to_bits() >> 31;
+    let divisor = x.to_bits().unsigned_abs();
+    if divisor <= 2 {
+        return I16F16::from_bits(i32::MAX ^ sign);
+    }
+    let shift = divisor.leading_zeros();
+    let quotient = reciprocal_of_normal(divisor << shift) >> (31 - shift);
+    let remainder = 0u32.wrapping_sub(quotient.wrapping_mul(divisor));
+    signed(mended(quotient, remainder, divisor), sign)
+}
+
+/// [`reciprocal`], or `None` for 0, 1 and 2 ulp and -1 ulp.
+pub const fn checked_reciprocal(x: I16F16) -> Option<I16F16> {
+    match x.to_bits() {
+        -1..=2 => None,
+        _ => Some(reciprocal(x)),
+    }
+}
+
+/// [`restoring`], or `None` where the divisor is zero or the quotient does not fit.
+pub const fn checked_restoring(a: I16F16, b: I16F16) -> Option<I16F16> {
+    if fits(a, b) { Some(restoring(a, b)) } else { None }
+}
+
+/// [`nearest`], or `None` where the divisor is zero or the quotient does not fit.
+///
+/// ```
+/// use fixedmath::{division, I16F16};
+/// assert_eq!(division::checked_nearest(I16F16::ONE, I16F16::ONE), Some(I16F16::ONE));
+/// assert_eq!(division::checked_nearest(I16F16::ONE, I16F16::ZERO), None);
+/// assert_eq!(division::checked_nearest(I16F16::MIN, -I16F16::ONE), None);
+/// ```
+pub const fn checked_nearest(a: I16F16, b: I16F16) -> Option<I16F16> {
+    if fits(a, b) { Some(nearest(a, b)) } else { None }
+}
+
+/// Whether there is a quotient within the format.
+const fn fits(a: I16F16, b: I16F16) -> bool {
+    let (dividend, divisor) = (a.to_bits().unsigned_abs(), b.to_bits().unsigned_abs());
+    let is_least = (a.to_bits() < 0) != (b.to_bits() < 0) && dividend as u64 == (divisor as u64) << 15;
+    divisor != 0 && (dividend >> 15 < divisor || is_least)
+}
+
+/// What saturates: the end of the range on the quotient's side; 0 for 0 / 0.
+const fn beyond(a: I16F16, sign: i32) -> I16F16 {
+    if a.to_bits() == 0 {
+        return I16F16::ZERO;
+    }
+    I16F16::from_bits(i32::MAX ^ sign)
+}
+
+/// A magnitude with its sign, all ones for minus.
+const fn signed(magnitude: u32, sign: i32) -> I16F16 {
+    I16F16::from_bits((magnitude as i32 ^ sign).wrapping_sub(sign))
+}
+
+/// `dividend 2^16 / divisor` to the nearest, halves up, for quotients below 2^31.
+#[inline]
+const fn quotient(dividend: u32, divisor: u32) -> u32 {
+    let shift = divisor.leading_zeros();
+    let inverse = reciprocal_of_normal(divisor << shift);
+    // dividend inverse / 2^(47 - shift): shifted before where that fits, or else after.
+    let quotient = if shift >= 15 {
+        upper(dividend << (shift - 15), inverse)
+    } else {
+        upper(dividend, inverse) >> (15 - shift)
+    };
+    let remainder = (dividend << 16).wrapping_sub(quotient.wrapping_mul(divisor));
+    mended(quotient, remainder, divisor)
+}
+
+/// A quotient that is right or one too small, rounded by its remainder, which is below twice the divisor, so that its
+/// lower word is all of it.
+#[inline]
+const fn mended(mut quotient: u32, mut remainder: u32, divisor: u32) -> u32 {
+    if remainder >= divisor {
+        remainder -= divisor;
+        quotient += 1;
+    }
+    if remainder << 1 >= divisor {
+        quotient += 1;
+    }
+    quotient
+}
+
+/// 2^63 / `d` for `d` >= 2^31, rounded down or one less, and below 2^32.
+#[inline]
+const fn reciprocal_of_normal(d: u32) -> u32 {
+    let [start, loss] = LINES[(d << 1 >> 27) as usize];
+    let r = start - upper(loss, d << 6);
+    // e 2^42, which has 30 bits; what is cut off makes it too small, never too large.
+    let e = !((d as u64 * r as u64) >> 21) as u32;
+    let e = e + (upper(e, e) >> 10);
+    r + (upper(r, e) >> 10)
+}
+
+const fn upper(a: u32, b: u32) -> u32 {
+    ((a as u64 * b as u64) >> 32) as u32
+}
+
+/// Lines for 2^63 / d below the curve, between multiples of 2^26 from 2^31 on: the value at the segment's start, and
+/// what it loses along the segment.
+static LINES: [[u32; 2]; 32] = lines();
+
+const fn lines() -> [[u32; 2]; 32] {
+    let mut lines = [[0; 2]; 32];
+    let mut segment = 0;
+    while segment < 32 {
+        let i = segment as u64 + 32;
+        let (start, end) = ((1 << 37) / i, (1 << 37) / (i + 1));
+        let middle = (1 << 38) / (2 * i + 1);
+        // The chord lies above the curve, most of all near the middle: lowered by that and a little it lies below.
+        let sag = (start + end) / 2 - middle;
+        let sag = sag + sag / 32 + 4;
+        lines[segment] = [(start - sag) as u32, (start - end) as u32];
+        segment += 1;
+    }
+    lines
 }

@@ -81,13 +81,67 @@ pub const fn of_square(x: I32F32) -> I16F16 {
     })
 }
 
+/// Square root of 48:16 in 16:16, to the nearest: within 0.5 ulp. A negative argument gives 0; a root past 32,767
+/// saturates.
+///
+/// ```
+/// use fixedmath::{root, I16F16, I48F16};
+/// assert_eq!(root::of_wide(I48F16::from_num(1_000_000)), I16F16::from_num(1000));
+/// assert_eq!(root::of_wide(I48F16::MAX), I16F16::MAX);
+/// ```
+#[inline]
+pub const fn of_wide(x: I48F16) -> I16F16 {
+    let bits = x.to_bits();
+    if bits <= 0 {
+        return I16F16::ZERO;
+    }
+    if bits >> 46 != 0 {
+        return I16F16::MAX;
+    }
+    I16F16::from_bits(nearest((bits as u64) << 16) as i32)
+}
+
 /// Square root of 16:16, to the nearest: within 0.5 ulp. A negative argument gives 0.
+///
+/// ```
+/// use fixedmath::{root, I16F16};
+/// assert_eq!(root::of_length(I16F16::from_num(2)), I16F16::from_bits(92682));
+/// ```
 #[inline]
 pub const fn of_length(x: I16F16) -> I16F16 {
     if x.to_bits() <= 0 {
         return I16F16::ZERO;
     }
-    I16F16::from_bits(nearest((x.to_bits() as u64) << 16) as i32)
+    let x = x.to_bits() as u32;
+    let (normal, shift) = normal_word(x);
+    let y = line(normal);
+    let root = upper(normal, y);
+    let root = grown(root, upper(root, y), SHORT);
+    // The root of x 2^16 has 24 bits at most; these are 30, less `shift`. Rounded from below it is the nearest, or one less
+    // where it is next to half an ulp.
+    let root = ((root >> (5 + shift)) + 1) >> 1;
+    let remainder = (x << 16).wrapping_sub(root.wrapping_mul(root)) as i32;
+    I16F16::from_bits(root as i32 + (remainder > root as i32) as i32)
+}
+
+/// `1 / sqrt(x)` of 16:16, to the nearest but for ties too close to tell: within 0.51 ulp. An argument of 0 or less gives
+/// `MAX`.
+///
+/// ```
+/// use fixedmath::{root, I16F16};
+/// assert_eq!(root::reciprocal_of_length(I16F16::from_num(4)), I16F16::from_num(0.5));
+/// assert_eq!(root::reciprocal_of_length(I16F16::ZERO), I16F16::MAX);
+/// ```
+#[inline]
+pub const fn reciprocal_of_length(x: I16F16) -> I16F16 {
+    if x.to_bits() <= 0 {
+        return I16F16::MAX;
+    }
+    let (normal, shift) = normal_word(x.to_bits() as u32);
+    let y = line(normal);
+    let y = grown(y, upper(upper(normal, y), y), 0);
+    // 2^(24 + shift) / sqrt(normal), of which y has 2^46.
+    I16F16::from_bits((((y >> (21 - shift)) + 1) >> 1) as i32)
 }
 
 /// Square root of 2:30, to the nearest: within 0.5 ulp of 2^-30. A negative argument gives 0.
@@ -161,17 +215,52 @@ const fn floor_of_normal(v: u64) -> u32 {
     }
 }
 
+/// `x` > 0 shifted left by the even number of places that brings it to 2^30 or more, and half that number.
+#[inline]
+const fn normal_word(x: u32) -> (u32, u32) {
+    let shift = x.leading_zeros() / 2;
+    (x << (2 * shift), shift)
+}
+
+/// Leaves a root some 2^-27 of itself short, more than its rounding can add; made to fit an `MVN`.
+const SHORT: i32 = 0x3fc1;
+
+/// `v` times the root of `1 / (1 - e)`, for `v` below 2^31 and `square` = 1 - e in 4:28, |e| < 2^-9: the step of third
+/// order, `1 + e/2 + 3/8 e^2`, within 2^-28.
+///
+/// It turns a reciprocal root y of x, and likewise a root x y, into better ones when x y^2 is 1 - e. `short` in
+/// 2^-40 is taken from e.
+#[inline]
+const fn grown(v: u32, square: u32, short: i32) -> u32 {
+    // 2^28 - square in 2^-40, where the 1 has left the word.
+    let e = (-short).wrapping_sub((square << 12) as i32);
+    let squared = upper_signed(e, e);
+    let growth = e + ((squared - (squared >> 2)) >> 8);
+    v.wrapping_add_signed(upper_signed(v as i32, growth) >> 9)
+}
+
+/// The upper word of a product: one `SMULL`.
+const fn upper_signed(a: i32, b: i32) -> i32 {
+    ((a as i64 * b as i64) >> 32) as i32
+}
+
 /// The upper word of a product: one `UMULL`.
 const fn upper(a: u32, b: u32) -> u32 {
     ((a as u64 * b as u64) >> 32) as u32
+}
+
+/// `1 / sqrt(x / 2^32)` in 2:30 for `x` >= 2^30, within 2^-10 of itself.
+#[inline]
+const fn line(x: u32) -> u32 {
+    let [start, loss] = LINES[(x >> 27) as usize];
+    start - upper(loss, x << 5)
 }
 
 /// `1 / sqrt(x / 2^32)` in 2:30 for `x` >= 2^30, from below, within 2^-19: a line, and one Newton step
 /// `y (3 - x y^2) / 2`, which never overshoots.
 #[inline]
 const fn reciprocal_seed(x: u32) -> u32 {
-    let [start, loss] = LINES[(x >> 27) as usize];
-    let y = start - upper(loss, x << 5);
+    let y = line(x);
     // x y^2 is 1 - e in 4:28; what the two products cut off must not count as e, or y could reach 2 and the sign bit.
     let e = (1 << 28) - 2 - upper(upper(x, y), y) as i32;
     (y as i32 + ((y as i32 as i64 * (e << 3) as i64) >> 32) as i32) as u32

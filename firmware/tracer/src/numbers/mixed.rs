@@ -120,7 +120,7 @@ impl Numbers for Mixed {
 
     #[inline]
     fn scale(l: I16F16, u: I2F30) -> I16F16 {
-        I16F16::from_bits(((i64::from(l.to_bits()) * i64::from(u.to_bits()) + (1 << 29)) >> 30) as i32)
+        product::wrapping_scaled(l, u)
     }
 
     #[inline]
@@ -134,25 +134,24 @@ impl Numbers for Mixed {
 
     #[inline]
     fn cosine(a: [I2F30; 3], b: [I2F30; 3]) -> I2F30 {
-        let ([ax, ay, az], [bx, by, bz]) = (bits(a), bits(b));
-        I2F30::from_bits(((ax * bx + ay * by + az * bz + (1 << 29)) >> 30) as i32)
+        product::cosine(a, b)
     }
 
     #[inline]
     fn times(a: I2F30, b: I2F30) -> I2F30 {
-        I2F30::from_bits(((i64::from(a.to_bits()) * i64::from(b.to_bits())) >> 30) as i32)
+        product::wrapping_of_units(a, b)
     }
 
     #[inline]
     fn normalised(v: [I2F30; 3], otherwise: [I2F30; 3]) -> [I2F30; 3] {
-        unit::normalised(v).unwrap_or(otherwise)
+        unit::checked_normalised(v).unwrap_or(otherwise)
     }
 
     #[inline]
     fn bisector(a: [I2F30; 3], b: [I2F30; 3], otherwise: [I2F30; 3]) -> [I2F30; 3] {
         // a + b may be 2, which 2:30 does not hold: add halves.
         let half = |i: usize| I2F30::from_bits((a[i].to_bits() >> 1) + (b[i].to_bits() >> 1));
-        unit::normalised([half(0), half(1), half(2)]).unwrap_or(otherwise)
+        unit::checked_normalised([half(0), half(1), half(2)]).unwrap_or(otherwise)
     }
 
     #[inline]

@@ -1,0 +1,16 @@
+//! Says whether the target has the instructions of `src/assembly/arm.rs`: ARM's own 32-bit set, or Thumb with 32-bit
+//! instructions. The target's name tells; a stable compiler keeps the instruction set from `cfg`.
+
+fn main() {
+    println!("cargo::rustc-check-cfg=cfg(shifted_operands)");
+    println!("cargo::rerun-if-changed=build.rs");
+    let target = std::env::var("TARGET").unwrap_or_default();
+    let arm =
+        target.starts_with("arm") && std::env::var("CARGO_CFG_TARGET_ARCH").is_ok_and(|arch| arch == "arm");
+    let thumb2 = ["thumbv7", "thumbv8m.main"]
+        .iter()
+        .any(|start| target.starts_with(start));
+    if arm || thumb2 {
+        println!("cargo::rustc-cfg=shifted_operands");
+    }
+}
