@@ -28,6 +28,41 @@ fn full_period_by_jumping_round() {
     assert_ne!(generator, Lcg64::new(42));
 }
 
+/// Bit `k` of a state has period 2^(k+1), and half of that inverts it; fractions are the upper half of a state.
+#[test]
+fn each_bit_has_its_own_period() {
+    let fraction_after = |steps: u64| {
+        let mut generator = Lcg64::new(42);
+        generator.jump(steps);
+        generator.next_fraction()
+    };
+    let first = fraction_after(0);
+    for bit in 0..32 {
+        let below = (2 << bit) - 1;
+        let (half, whole) = (1 << (32 + bit), (1u64 << (32 + bit)).wrapping_mul(2));
+        assert_eq!((fraction_after(half) ^ first) & below, 1 << bit, "bit {bit}");
+        assert_eq!((fraction_after(whole) ^ first) & below, 0, "bit {bit}");
+    }
+    let low_bits_after = |steps: u32| {
+        let mut generator = Lcg32::new(42);
+        generator.jump(steps);
+        generator.low_bits()
+    };
+    let first = low_bits_after(0);
+    for bit in 0..16 {
+        assert_eq!(
+            (low_bits_after(1 << bit) ^ first) & ((2 << bit) - 1) as u16,
+            1 << bit,
+            "bit {bit}"
+        );
+        assert_eq!(
+            (low_bits_after(2 << bit) ^ first) & ((2 << bit) - 1) as u16,
+            0,
+            "bit {bit}"
+        );
+    }
+}
+
 proptest! {
     #[test]
     fn jumps_equal_steps(seed: u64, steps in 0u32..5000) {

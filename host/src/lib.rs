@@ -3,7 +3,7 @@
 //! In the order of a render: [`scene`] reads and compiles, [`setup`] and [`firmware`] build the image, [`fleet`] starts the
 //! cores of a [`session`], [`collector`] gathers their pixels on a [`film`], [`reference`](mod@reference) and [`lockstep`] say what
 //! they should have been, [`compare`] and [`difference`] how far off they are, and [`report`] writes it down. [`job`] is
-//! all of that in one call.
+//! all of that in one call. [`generators`] judges the random numbers by themselves.
 
 pub mod arithmetic;
 pub mod collector;
@@ -13,6 +13,7 @@ pub mod file;
 pub mod film;
 pub mod firmware;
 pub mod fleet;
+pub mod generators;
 pub mod interrupt;
 pub mod job;
 pub mod lockstep;

@@ -1,5 +1,6 @@
 //! The project's commands. Thin: each verb is one file, and what a test needs to reach is in the host library.
 
+mod bench;
 mod qemu_run;
 mod render;
 mod size;
@@ -25,6 +26,9 @@ enum Verb {
     QemuRun(qemu_run::Arguments),
     /// Print each image's bytes of code, data and stack against the budget
     Size(size::Arguments),
+    /// Measure parts by themselves
+    #[command(subcommand)]
+    Bench(bench::Bench),
 }
 
 /// The flag that several verbs share.
@@ -62,6 +66,7 @@ fn main() -> ExitCode {
         Verb::Test(arguments) => test::run(&arguments),
         Verb::QemuRun(arguments) => qemu_run::run(&arguments),
         Verb::Size(arguments) => size::run(&arguments),
+        Verb::Bench(bench) => bench::run(&bench),
     };
     done.unwrap_or_else(|error| {
         eprintln!("error: {}", message(&error));

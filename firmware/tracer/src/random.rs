@@ -14,11 +14,11 @@ pub trait Random {
 /// 2^64 over the golden ratio, rounded down. Multiples of it by 0, 1, 2, ... keep as far apart as any sequence can: the
 /// first `n` are at least 2^64 / (2.63 n) steps from each other up to n = 2^31. From there on the rounding shows, and 2^32
 /// units are 5e7 steps apart at the least, far more than the 1,024 samples of a usual unit draw.
-const STRIDE: u64 = 0x9e37_79b9_7f4a_7c15;
+pub const STRIDE: u64 = 0x9e37_79b9_7f4a_7c15;
 
 /// Spreads a seed over all bits (the finaliser of D. Stafford's variant 13, as in SplitMix64), so that seeds 1 and 2
-/// start far apart.
-fn spread(seed: u64) -> u64 {
+/// start far apart: the state before the first number of unit 0.
+pub const fn spread(seed: u64) -> u64 {
     let z = (seed ^ (seed >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
     z ^ (z >> 31)
