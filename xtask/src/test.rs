@@ -25,6 +25,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
         qemu: true,
         firmware: true,
         lints: true,
+        ..Wanted::default()
     };
     let tools = step("set-up", || {
         Ok(setup::ensure(wanted, arguments.set_up.install())?)

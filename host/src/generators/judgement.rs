@@ -1,11 +1,14 @@
 //! The judgement on the tracer's two generators.
 
+use std::path::Path;
+
 use serde::Serialize;
 use tracer::random::{FullState, LowBits, Random, STRIDE, spread};
 
+use super::dieharder::{self, Battery, DieharderError, Row};
 use super::period::{self, Closest, Congruential};
 use super::spectral::Spectrum;
-use super::streams::{first_of_units, unit_after_unit};
+use super::streams::{Width, first_of_units, unit_after_unit};
 use super::uniformity::Uniformity;
 
 /// The published generator, `fixedmath::random::Lcg32`.
@@ -50,6 +53,8 @@ pub struct Judgement {
     pub within_units: Uniformity,
     /// The first number of each unit.
     pub across_units: Uniformity,
+    /// Dieharder's results, where it was asked.
+    pub dieharder: Vec<Row>,
 }
 
 impl Judgement {
@@ -76,6 +81,7 @@ impl Judgement {
             merits: spectrum.merits,
             within_units: tested(&mut unit_after_unit::<R>(SEED)),
             across_units: tested(&mut first_of_units::<R>(SEED)),
+            dieharder: Vec::new(),
         }
     }
 }
@@ -87,6 +93,29 @@ pub fn judge() -> [Judgement; 2] {
         // Nothing above bit 15 reaches the bits below it: they are a generator of their own.
         Judgement::of::<LowBits>("paper", "lower 16 of 32", PUBLISHED, 16),
     ]
+}
+
+/// The tests by which the published use is shown to fail; each takes seconds, the whole battery most of an hour.
+const ENOUGH_FOR_LOW_BITS: [u16; 5] = [0, 2, 8, 15, 101];
+
+/// Runs dieharder on both generators, ours through all of its tests, and tells each result as it comes.
+///
+/// The rows are in the order of [`judge`].
+pub fn batteries(program: &Path, mut tell: impl FnMut(&Row)) -> Result<[Vec<Row>; 2], DieharderError> {
+    let mut published = Vec::new();
+    for number in ENOUGH_FOR_LOW_BITS {
+        let numbers = unit_after_unit::<LowBits>(SEED);
+        published.extend(dieharder::run(
+            program,
+            Battery::Only(number),
+            numbers,
+            Width::Half,
+            &mut tell,
+        )?);
+    }
+    let numbers = unit_after_unit::<FullState>(SEED);
+    let ours = dieharder::run(program, Battery::All, numbers, Width::Full, &mut tell)?;
+    Ok([ours, published])
 }
 
 /// How the streams of `precise` lie on their common period.

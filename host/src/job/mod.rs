@@ -245,7 +245,7 @@ pub fn render(options: &RenderOptions, interrupted: &AtomicBool) -> Result<(), J
     let wanted = Wanted {
         qemu: emulated,
         firmware: emulated,
-        lints: false,
+        ..Wanted::default()
     };
     let install = if options.no_install {
         Install::Forbidden

@@ -14,6 +14,8 @@ pub struct Wanted {
     pub firmware: bool,
     /// `cargo fmt` and `cargo clippy`.
     pub lints: bool,
+    /// The battery of tests for random numbers.
+    pub dieharder: bool,
 }
 
 /// A Rust compiler found on the machine, recent enough for this workspace.
@@ -58,6 +60,8 @@ pub enum Apt {
 pub struct Facts {
     /// `qemu-system-arm`.
     pub qemu: Option<PathBuf>,
+    /// `dieharder`.
+    pub dieharder: Option<PathBuf>,
     /// Compilers, the preferred one first.
     pub compilers: Vec<Compiler>,
     /// `rust-lld` or `ld.lld`.
@@ -77,6 +81,8 @@ pub struct Facts {
 pub struct Tools {
     /// The emulator, where it was wanted.
     pub qemu: Option<PathBuf>,
+    /// The battery of tests for random numbers, where it was wanted.
+    pub dieharder: Option<PathBuf>,
     /// What builds the firmware, where it was wanted.
     pub firmware: Option<Toolchain>,
 }
@@ -151,6 +157,7 @@ pub enum Plan {
 }
 
 const QEMU: &str = "QEMU for Arm (qemu-system-arm)";
+const DIEHARDER: &str = "tests for random numbers (dieharder)";
 const SOURCE: &str = "a Rust compiler with the source of its library (rust-src)";
 const LINKER: &str = "a linker for the boards (rust-lld or ld.lld)";
 const RUSTFMT: &str = "cargo fmt";
@@ -164,11 +171,16 @@ struct Gap {
     packages: &'static [&'static str],
 }
 
-const GAPS: [Gap; 6] = [
+const GAPS: [Gap; 7] = [
     Gap {
         name: QEMU,
         component: None,
         packages: &["qemu-system-arm"],
+    },
+    Gap {
+        name: DIEHARDER,
+        component: None,
+        packages: &["dieharder"],
     },
     Gap {
         name: SOURCE,
@@ -202,6 +214,7 @@ pub fn decide(facts: &Facts, wanted: Wanted) -> Plan {
     let with_source = facts.compilers.iter().find(|compiler| compiler.has_source);
     let lacks = |name| match name {
         QEMU => wanted.qemu && facts.qemu.is_none(),
+        DIEHARDER => wanted.dieharder && facts.dieharder.is_none(),
         SOURCE => wanted.firmware && with_source.is_none(),
         LINKER => wanted.firmware && facts.linker.is_none(),
         RUSTFMT => wanted.lints && !facts.rustfmt,
@@ -221,6 +234,7 @@ pub fn decide(facts: &Facts, wanted: Wanted) -> Plan {
     };
     Plan::Ready(Tools {
         qemu: facts.qemu.clone().filter(|_| wanted.qemu),
+        dieharder: facts.dieharder.clone().filter(|_| wanted.dieharder),
         firmware,
     })
 }
@@ -253,7 +267,8 @@ fn fill(gaps: &[&Gap], facts: &Facts) -> Plan {
         }
         (false, Apt::Absent) => {
             let advice = "this is not a Debian, so install them with this system's own means: the programs \
-                          qemu-system-arm and ld.lld in PATH, and the rustup components rust-src, rustfmt and clippy";
+                          qemu-system-arm, ld.lld and dieharder in PATH, and the rustup components rust-src, rustfmt \
+                          and clippy";
             return Plan::ByHand {
                 missing,
                 advice: advice.to_owned(),
@@ -285,6 +300,7 @@ mod tests {
         qemu: true,
         firmware: true,
         lints: true,
+        dieharder: false,
     };
 
     fn compiler(at: &str, has_source: bool) -> Compiler {
@@ -300,6 +316,7 @@ mod tests {
     fn fresh() -> Facts {
         Facts {
             qemu: None,
+            dieharder: None,
             compilers: vec![compiler("/rustup", false)],
             linker: Some("/rustup/rust-lld".into()),
             rustfmt: true,
@@ -374,6 +391,7 @@ mod tests {
             decide(&facts, native),
             Plan::Ready(Tools {
                 qemu: None,
+                dieharder: None,
                 firmware: None
             })
         );
@@ -386,6 +404,11 @@ mod tests {
             said.contains("rust-src") && !said.contains("qemu") && !said.contains("apt-get"),
             "{said}"
         );
+        let battery = Wanted {
+            dieharder: true,
+            ..native
+        };
+        assert!(announced(&facts, battery).ends_with("--no-install-recommends dieharder"));
     }
 
     #[test]

@@ -25,6 +25,7 @@ pub fn survey() -> Facts {
     }
     Facts {
         qemu: program("qemu-system-arm"),
+        dieharder: program("dieharder"),
         linker: sysroots
             .iter()
             .find_map(|sysroot| bundled_linker(sysroot))

@@ -4,16 +4,25 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Context;
+use host::generators::dieharder::Assessment;
 use host::generators::judgement::{self, Judgement, Streams};
 use host::generators::uniformity::{FALSE_ALARM, Power, SURE, Uniformity};
+use host::setup::{self, Wanted};
 use serde::Serialize;
+
+use crate::SetUp;
 
 /// Arguments of `bench generators`.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
+    /// Run Debian's dieharder on the tracer's numbers, too: most of an hour
+    #[arg(long)]
+    dieharder: bool,
     /// Write the judgement as JSON, too
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
+    #[command(flatten)]
+    set_up: SetUp,
 }
 
 /// All that was found.
@@ -24,18 +33,61 @@ struct Found {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
-    let found = Found {
+    let mut found = Found {
         generators: judgement::judge().into(),
         streams: judgement::streams(),
     };
     println!("{}", lattices(&found));
     println!("{}", layout(&found.streams));
     println!("{}", uniformity(&found.generators));
+    if arguments.dieharder {
+        run_dieharder(&mut found.generators, &arguments.set_up)?;
+        println!("\n{}", batteries(&found.generators));
+    }
     if let Some(path) = &arguments.json {
         let json = serde_json::to_string_pretty(&found)?;
         std::fs::write(path, json + "\n").with_context(|| format!("cannot write {}", path.display()))?;
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// Adds dieharder's results.
+fn run_dieharder(generators: &mut [Judgement], set_up: &SetUp) -> anyhow::Result<()> {
+    let wanted = Wanted {
+        dieharder: true,
+        ..Wanted::default()
+    };
+    let tools = setup::ensure(wanted, set_up.install())?;
+    let program = tools.dieharder.context("set-up gave no dieharder")?;
+    let rows = judgement::batteries(&program, |row| eprintln!("{row}"))?;
+    for (judged, rows) in generators.iter_mut().zip(rows) {
+        judged.dieharder = rows;
+    }
+    Ok(())
+}
+
+fn batteries(generators: &[Judgement]) -> String {
+    let lines = generators.iter().map(|judged| {
+        let count = |assessment| {
+            let rows = judged.dieharder.iter();
+            rows.filter(|row| row.assessment == assessment).count()
+        };
+        let failed: Vec<&str> = judged
+            .dieharder
+            .iter()
+            .filter(|row| row.assessment == Assessment::Failed)
+            .map(|row| row.test.as_str())
+            .collect();
+        format!(
+            "{:8} dieharder: {} results passed, {} weak, {} failed {}",
+            judged.profile,
+            count(Assessment::Passed),
+            count(Assessment::Weak),
+            failed.len(),
+            failed.join(" ")
+        )
+    });
+    lines.collect::<Vec<_>>().join("\n")
 }
 
 fn merits(merits: &[f64]) -> String {

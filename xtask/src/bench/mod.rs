@@ -7,7 +7,7 @@ use std::process::ExitCode;
 /// What to measure.
 #[derive(clap::Subcommand)]
 pub(crate) enum Bench {
-    /// Judge the random number generators: period, lattice, streams, uniformity
+    /// Judge the random number generators: period, lattice, streams, uniformity, dieharder
     Generators(generators::Arguments),
 }
 
