@@ -1,4 +1,4 @@
-//! Sine and cosine of an angle in turns.
+//! Sine and cosine of an angle in turns, and the angle of a vector.
 //!
 //! A turn is a 32-bit fraction, so the reduction to one period is the wrap of an integer and costs nothing.
 //!
@@ -8,6 +8,8 @@
 //! to nearly the last bit of 2:30.
 
 use fixed::types::{I2F30, I16F16};
+
+use crate::division;
 
 /// Sine of `turn` / 2^32 turns by the published parabola `8 t (1 - 2 |t|)` in 16:16, |t| <= 1/2.
 ///
@@ -31,6 +33,10 @@ pub const fn refined_parabolic_sine(turn: u32) -> I16F16 {
 
 const fn upper(a: i32, b: i32) -> i32 {
     ((a as i64 * b as i64) >> 32) as i32
+}
+
+const fn whole(a: u32, b: u32) -> u32 {
+    ((a as u64 * b as u64) >> 32) as u32
 }
 
 /// Cosine and sine in 2:30 at the middle of each 128th of a turn, 7.5e-5 short of the unit circle: half of what turning
@@ -129,15 +135,19 @@ pub const fn cosine(turn: u32) -> I16F16 {
 /// assert_eq!((cosine, sine), (I2F30::ZERO, I2F30::ONE));
 /// ```
 pub const fn cos_sin(turn: u32) -> (I2F30, I2F30) {
-    // Horner's scheme in the upper halves of products: each step by w (2:30) moves the binary point two places down.
-    const S: [i32; 4] = [1_686_629_708, -693_598_004, 85_555_993, -4_941_550];
-    const C: [i32; 5] = [1 << 30, -1_324_675_869, 272_375_234, -22_398_331, 970_267];
+    // Horner's scheme in the upper halves of products: each step by w (2:30) moves the binary point two places down. These
+    // are magnitudes of alternating signs: what is known to be positive, LLVM multiplies badly as a signed number.
+    const S: [u32; 4] = [1_686_629_708, 693_598_004, 85_555_993, 4_941_550];
+    const C: [u32; 5] = [1 << 30, 1_324_675_869, 272_375_234, 22_398_331, 970_267];
     let shifted = turn.wrapping_add(1 << 29);
     // z in [-1, 1) as 0:31 stands for an eighth of a turn either side.
     let z = ((shifted << 2) ^ (1 << 31)) as i32;
-    let w = upper(z, z);
-    let s = upper(z, S[0] + upper(S[1] + upper(S[2] + upper(S[3], w), w), w));
-    let c = C[0] + upper(C[1] + upper(C[2] + upper(C[3] + upper(C[4], w), w), w), w);
+    let w = upper(z, z) as u32;
+    let s = upper(
+        z,
+        (S[0] - whole(S[1] - whole(S[2] - whole(S[3], w), w), w)) as i32,
+    );
+    let c = (C[0] - whole(C[1] - whole(C[2] - whole(C[3] - whole(C[4], w), w), w), w)) as i32;
     let (cosine, sine) = match shifted >> 30 {
         0 => (c, s),
         1 => (-s, c),
@@ -145,4 +155,73 @@ pub const fn cos_sin(turn: u32) -> (I2F30, I2F30) {
         _ => (s, -c),
     };
     (I2F30::from_bits(cosine), I2F30::from_bits(sine))
+}
+
+/// The angle of the vector (x, y) in 2^-32 turns, counted from the x axis towards the y axis: within 0.12 ulp of 2^-16
+/// radians. The zero vector has angle 0.
+///
+/// The smaller component over the larger, and a minimax polynomial of degree 11 over that eighth of a turn (1.7e-6
+/// radians).
+///
+/// ```
+/// use fixedmath::{angle, I16F16};
+/// let (one, none) = (I16F16::ONE, I16F16::ZERO);
+/// assert_eq!(angle::of_vector(one, none), 0);
+/// assert_eq!(angle::of_vector(none, one), 1 << 30);
+/// assert_eq!(angle::of_vector(-one, none), 1 << 31);
+/// ```
+#[inline]
+pub const fn of_vector(x: I16F16, y: I16F16) -> u32 {
+    let (width, height) = (x.to_bits().unsigned_abs(), y.to_bits().unsigned_abs());
+    let steep = height > width;
+    let (short, long) = if steep { (width, height) } else { (height, width) };
+    if long == 0 {
+        return 0;
+    }
+    let shift = long.leading_zeros();
+    let inverse = division::reciprocal_of_normal(long << shift);
+    // Their ratio in 0:31, below 1 because the reciprocal is.
+    let ratio = (((short << shift) as u64 * inverse as u64) >> 32) as u32;
+    let eighth = arctangent(ratio);
+    let quarter = if steep { (1 << 30) - eighth } else { eighth };
+    let half = if x.to_bits() < 0 {
+        (1 << 31) - quarter
+    } else {
+        quarter
+    };
+    if y.to_bits() < 0 {
+        half.wrapping_neg()
+    } else {
+        half
+    }
+}
+
+/// [`of_vector`], or `None` for the zero vector.
+pub const fn checked_of_vector(x: I16F16, y: I16F16) -> Option<u32> {
+    if x.to_bits() == 0 && y.to_bits() == 0 {
+        None
+    } else {
+        Some(of_vector(x, y))
+    }
+}
+
+/// The angle in 2^-32 turns whose tangent is `ratio` in 0:31.
+#[inline]
+const fn arctangent(ratio: u32) -> u32 {
+    // Magnitudes of alternating signs; each step by the square (1:31) moves the binary point one place down.
+    const A: [u32; 6] = [
+        1_367_099_407,
+        909_477_664,
+        1_058_379_890,
+        1_273_361_804,
+        1_151_613_221,
+        512_691_091,
+    ];
+    let w = whole(ratio << 1, ratio);
+    let sum = A[0]
+        - whole(
+            A[1] - whole(A[2] - whole(A[3] - whole(A[4] - whole(A[5], w), w), w), w),
+            w,
+        );
+    whole(sum, ratio)
 }

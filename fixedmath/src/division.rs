@@ -180,7 +180,7 @@ const fn mended(mut quotient: u32, mut remainder: u32, divisor: u32) -> u32 {
 
 /// 2^63 / `d` for `d` >= 2^31, rounded down or one less, and below 2^32.
 #[inline]
-const fn reciprocal_of_normal(d: u32) -> u32 {
+pub(crate) const fn reciprocal_of_normal(d: u32) -> u32 {
     let [start, loss] = LINES[(d << 1 >> 27) as usize];
     let r = start - upper(loss, d << 6);
     // e 2^42, which has 30 bits; what is cut off makes it too small, never too large.

@@ -7,10 +7,12 @@
 //! | room | what |
 //! | --- | --- |
 //! | [`product`] | products with one rounding, dot products in 64 bits |
-//! | [`division`] | restoring division of 16:16 |
-//! | [`root`] | square roots: restoring, split, and by reciprocal root |
-//! | [`mod@unit`] | directions in 2:30: normalising, first-order renormalising |
-//! | [`angle`] | sine and cosine of a turn: parabolas and polynomials |
+//! | [`division`] | quotients and reciprocals of 16:16 |
+//! | [`root`] | square roots and reciprocal square roots |
+//! | [`mod@unit`] | lengths of vectors, and directions in 2:30 |
+//! | [`angle`] | sine and cosine of a turn, the angle of a vector |
+//! | [`exponential`] | e^x |
+//! | [`warp`] | samples from random fractions: tent, sphere, cosine hemisphere |
 //! | [`random`] | linear congruential generators with jump-ahead |
 //!
 //! A bound in *ulp* counts units in the last place of the result's own format.
@@ -21,9 +23,11 @@ pub mod angle;
 #[allow(unsafe_code)]
 mod assembly;
 pub mod division;
+pub mod exponential;
 pub mod product;
 pub mod random;
 pub mod root;
 pub mod unit;
+pub mod warp;
 
 pub use fixed::types::{I2F30, I16F16, I32F32, I48F16};

@@ -153,6 +153,28 @@ pub const fn of_fraction(x: I2F30) -> I2F30 {
     I2F30::from_bits(nearest((x.to_bits() as u64) << 30) as i32)
 }
 
+/// Square root of a share in 0:32, not 0, in 2:30: within 4 ulp of 2^-30.
+#[inline]
+pub(crate) const fn of_share(share: u32) -> u32 {
+    let (normal, shift) = normal_word(share);
+    rough(normal) >> shift
+}
+
+/// Twice the square root of a share in 0:64, not 0 and below 1/4, in 2:30: within 8 ulp of 2^-30.
+#[inline]
+pub(crate) const fn of_wide_share(share: u64) -> u32 {
+    let (normal, shift) = normalised(share);
+    rough((normal >> 32) as u32) >> (shift - 1)
+}
+
+/// The root of `x` 2^-32 in 2:30 for `x` >= 2^30, within 4 ulp.
+#[inline]
+const fn rough(x: u32) -> u32 {
+    let y = line(x);
+    let root = upper(x, y);
+    grown(root, upper(root, y), 0)
+}
+
 /// The integer nearest to the square root of `v`; `u32::MAX` where that is 2^32.
 #[inline]
 pub const fn nearest(v: u64) -> u32 {

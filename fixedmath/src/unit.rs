@@ -95,6 +95,15 @@ pub fn checked_normalised(v: [I2F30; 3]) -> Option<[I2F30; 3]> {
     Some(direction(unit_bits(v), square))
 }
 
+/// The direction halfway between two unit vectors: half their sum brought to unit length, each component within 3 ulp of
+/// 2^-30, or `None` where they are opposite to within 2^-14.
+#[inline]
+pub fn checked_bisector(a: [I2F30; 3], b: [I2F30; 3]) -> Option<[I2F30; 3]> {
+    // a + b may be 2, which 2:30 does not hold.
+    let half = |i: usize| I2F30::from_bits((a[i].to_bits() >> 1) + (b[i].to_bits() >> 1));
+    checked_normalised([half(0), half(1), half(2)])
+}
+
 /// `v` over its length, the root of `square`.
 #[inline]
 fn direction(v: [i32; 3], square: u64) -> [I2F30; 3] {

@@ -211,7 +211,7 @@ impl Numbers for Double {
     }
 
     fn signed(fraction: u32) -> f64 {
-        of_bits(fraction as i32, 31)
+        of_bits(fraction, 31) - 1.0
     }
 
     fn root_of(fraction: u32) -> f64 {

@@ -136,6 +136,6 @@ fn pictures_are_the_golden_ones_to_the_bit() {
 }
 
 const GOLDEN: [&str; 2] = [
-    "cd4153fd5061c710ce169ab6126542456565e368f930af9e5a0af5b1183f2002",
+    "009c9189269690269a95a4ef67ce3a61d2beb59b9b675e4bb7981bc55d72695c",
     "3e19da610219518bcf7fa47fba4fc0a658556deb181bfb8137694b8444a3d114",
 ];

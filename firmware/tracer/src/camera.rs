@@ -32,18 +32,10 @@ pub struct Camera<N: Numbers> {
     pub rows: Axis,
 }
 
-/// A sample's place within its sub-pixel: the tent filter on (-1, 1), by inversion.
-///
-/// The top bit of the fraction says which slope, the others how far up it.
-fn tent<N: Numbers>(fraction: u32) -> N::Unit {
-    let offset = N::ONE - N::root_of(fraction << 1);
-    if fraction >> 31 == 0 { -offset } else { offset }
-}
-
 impl<N: Numbers> Camera<N> {
-    /// A ray through the sub-pixel in `column` from the left and `row` from below.
+    /// A ray through the sub-pixel in `column` from the left and `row` from below, spread by the tent filter.
     pub fn ray<R: Random>(&self, column: u32, row: u32, random: &mut R) -> Ray<'static, N> {
-        let (x, y) = (tent::<N>(random.fraction()), tent::<N>(random.fraction()));
+        let (x, y) = (N::tent(random.fraction()), N::tent(random.fraction()));
         let x = N::across(column, x, self.columns.subpixels, self.columns.reciprocal);
         let y = N::across(row, y, self.rows.subpixels, self.rows.reciprocal);
         let direction = N::normalised(N::combine(self.forward, x, self.right, y, self.up), self.forward);

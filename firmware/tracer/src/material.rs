@@ -106,10 +106,7 @@ pub enum Offset {}
 impl Diffuse for Offset {
     #[inline]
     fn direction<N: Numbers, R: Random>(normal: [N::Unit; 3], random: &mut R) -> [N::Unit; 3] {
-        let height = N::signed(random.fraction());
-        let (cosine, sine) = N::cos_sin(random.fraction());
-        let radius = N::complement(height);
-        let offset = [N::times(cosine, radius), N::times(sine, radius), height];
+        let offset = N::sphere(random.fraction(), random.fraction());
         N::bisector(normal, offset, normal)
     }
 }

@@ -98,12 +98,25 @@ pub trait Numbers: Copy + Debug + 'static {
 
     /// Cosine and sine of `turn` / 2^32 turns.
     fn cos_sin(turn: u32) -> (Self::Unit, Self::Unit);
-    /// `fraction` / 2^31 - 1 in two's complement: uniform in [-1, 1).
+    /// `fraction` / 2^31 - 1: uniform in [-1, 1).
     fn signed(fraction: u32) -> Self::Unit;
     /// The root of `fraction` / 2^32.
     fn root_of(fraction: u32) -> Self::Unit;
     /// `sqrt(1 - z^2)`.
     fn complement(z: Self::Unit) -> Self::Unit;
+    /// The tent filter's distribution on (-1, 1), by inversion. The top bit of the fraction says which slope, the others how
+    /// far up it.
+    fn tent(fraction: u32) -> Self::Unit {
+        let offset = Self::ONE - Self::root_of(fraction << 1 | 1);
+        if fraction >> 31 == 0 { -offset } else { offset }
+    }
+    /// A point of the unit sphere, uniform by area.
+    fn sphere(height: u32, turn: u32) -> [Self::Unit; 3] {
+        let height = Self::signed(height);
+        let (cosine, sine) = Self::cos_sin(turn);
+        let radius = Self::complement(height);
+        [Self::times(cosine, radius), Self::times(sine, radius), height]
+    }
     /// Whether `fraction` / 2^32 lies below a probability.
     fn below(fraction: u32, probability: Self::Unit) -> bool;
 

@@ -1,6 +1,6 @@
 //! Ours: lengths in 16:16, directions in 2:30, squares in 32:32.
 
-use fixedmath::{I2F30, I16F16, I32F32, angle, product, root, unit};
+use fixedmath::{I2F30, I16F16, I32F32, angle, product, root, unit, warp};
 
 use super::Numbers;
 
@@ -149,9 +149,7 @@ impl Numbers for Mixed {
 
     #[inline]
     fn bisector(a: [I2F30; 3], b: [I2F30; 3], otherwise: [I2F30; 3]) -> [I2F30; 3] {
-        // a + b may be 2, which 2:30 does not hold: add halves.
-        let half = |i: usize| I2F30::from_bits((a[i].to_bits() >> 1) + (b[i].to_bits() >> 1));
-        unit::checked_normalised([half(0), half(1), half(2)]).unwrap_or(otherwise)
+        unit::checked_bisector(a, b).unwrap_or(otherwise)
     }
 
     #[inline]
@@ -166,7 +164,7 @@ impl Numbers for Mixed {
 
     #[inline]
     fn signed(fraction: u32) -> I2F30 {
-        I2F30::from_bits(fraction as i32 >> 1)
+        I2F30::from_bits((fraction ^ 1 << 31) as i32 >> 1)
     }
 
     #[inline]
@@ -179,6 +177,16 @@ impl Numbers for Mixed {
     fn complement(z: I2F30) -> I2F30 {
         let z = i64::from(z.to_bits());
         I2F30::from_bits(root::nearest(ONE_SQUARED.saturating_sub((z * z) as u64)) as i32)
+    }
+
+    #[inline]
+    fn tent(fraction: u32) -> I2F30 {
+        warp::tent(fraction)
+    }
+
+    #[inline]
+    fn sphere(height: u32, turn: u32) -> [I2F30; 3] {
+        warp::sphere(height, turn)
     }
 
     #[inline]

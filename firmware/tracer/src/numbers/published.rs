@@ -132,7 +132,7 @@ impl Numbers for Published {
     }
 
     fn signed(fraction: u32) -> I16F16 {
-        I16F16::from_bits(fraction as i32 >> 15)
+        I16F16::from_bits((fraction ^ 1 << 31) as i32 >> 15)
     }
 
     fn root_of(fraction: u32) -> I16F16 {

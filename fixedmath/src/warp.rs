@@ -1,0 +1,63 @@
+//! Samples: from uniform random fractions to points distributed as light transport wants them.
+//!
+//! A fraction is 32 bits that stand for the middle of one of 2^32 equal parts of [0, 1].
+
+use fixed::types::I2F30;
+
+use crate::{angle, product, root, unit};
+
+/// The tent filter's distribution on (-1, 1), by inversion: `1 - sqrt(f)` with the sign of the top bit, where `f` is the
+/// rest of the fraction. Within 4 ulp of 2^-30.
+///
+/// ```
+/// use fixedmath::{warp, I2F30};
+/// assert!(warp::tent(0) < -I2F30::ONE + I2F30::from_num(1e-4));
+/// assert!((warp::tent(0xa000_0000).to_num::<f64>() - 0.5).abs() < 4e-9);
+/// ```
+#[inline]
+pub const fn tent(fraction: u32) -> I2F30 {
+    let offset = (1 << 30) - root::of_share(fraction << 1 | 1) as i32;
+    I2F30::from_bits(if fraction >> 31 == 0 { -offset } else { offset })
+}
+
+/// A point of the unit sphere, uniform by area: its height uniform in [-1, 1], as Archimedes found, and its angle a turn.
+/// Each component within 8 ulp of 2^-30.
+///
+/// ```
+/// use fixedmath::{warp, I2F30};
+/// let [x, y, z] = warp::sphere(1 << 31, 1 << 30);
+/// assert!(x.to_num::<f64>().abs() < 1e-8 && (y.to_num::<f64>() - 1.0).abs() < 1e-8);
+/// assert_eq!(z, I2F30::ZERO);
+/// ```
+#[inline]
+pub const fn sphere(height: u32, turn: u32) -> [I2F30; 3] {
+    let (cosine, sine) = angle::cos_sin(turn);
+    // A height of 2 f - 1 leaves 1 - (2 f - 1)^2 = 4 f (1 - f) to the squared radius. With f the middle of its part that is
+    // this much and 2^31 - 1/4: one less keeps it below 2^62.
+    let quarter = height as u64 * !height as u64 + ((1 << 31) - 1);
+    let radius = I2F30::from_bits(root::of_wide_share(quarter) as i32);
+    [
+        product::wrapping_of_units(cosine, radius),
+        product::wrapping_of_units(sine, radius),
+        I2F30::from_bits((height ^ 1 << 31) as i32 >> 1),
+    ]
+}
+
+/// A direction on the side of the unit vector `normal`, in proportion to its cosine with it: the normal plus a point of
+/// the unit [`sphere`], brought to unit length. It needs no basis, and there is no axis where it breaks down.
+///
+/// Where the sum vanishes the normal itself is the result.
+///
+/// ```
+/// use fixedmath::{product, warp, I2F30};
+/// let up = [I2F30::ZERO, I2F30::ZERO, I2F30::ONE];
+/// let direction = warp::cosine_hemisphere(up, 0x1234_5678, 0x9abc_def0);
+/// assert!(product::cosine(up, direction) > I2F30::ZERO);
+/// ```
+#[inline]
+pub fn cosine_hemisphere(normal: [I2F30; 3], height: u32, turn: u32) -> [I2F30; 3] {
+    match unit::checked_bisector(normal, sphere(height, turn)) {
+        Some(direction) => direction,
+        None => normal,
+    }
+}
