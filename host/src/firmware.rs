@@ -23,6 +23,9 @@ pub const ITCM_BUDGET: u64 = 0x7F00;
 /// Usable bytes of data memory: boot block, data and stacks.
 pub const DTCM_BUDGET: u64 = 0xF800;
 
+/// Instructions in a tick of the boards' clocks of 24 MHz, where an instruction is a nanosecond.
+pub const INSTRUCTIONS_PER_TICK: f64 = 1000.0 / 24.0;
+
 const TARGET: &str = "armv5te-none-eabi";
 const BOARD: &str = "versatilepb";
 /// Where data memory starts; instruction memory starts at 0.
@@ -136,6 +139,14 @@ pub enum FirmwareError {
         /// What the compiler or the linker said.
         output: String,
     },
+    /// The build of an example failed.
+    #[error("firmware: the build of {names} failed:\n{output}")]
+    Example {
+        /// The examples.
+        names: String,
+        /// What the compiler or the linker said.
+        output: String,
+    },
     /// The ELF could not be read.
     #[error("firmware: {} is no image of ours: {cause}", path.display())]
     Elf {
@@ -197,6 +208,35 @@ pub fn build(toolchain: &Toolchain, recipe: &Recipe) -> Result<Image, FirmwareEr
             symbols: size.float_symbols,
         })
     }
+}
+
+/// Builds examples of the board's crate, which need no scene, and says where their ELF files are.
+pub fn build_examples(toolchain: &Toolchain, names: &[String]) -> Result<Vec<PathBuf>, FirmwareError> {
+    let recipe = Recipe {
+        profile: Arithmetic::Precise,
+        needs: SceneNeeds {
+            diffuse: true,
+            mirror: true,
+            glass: true,
+        },
+        roulette: true,
+    };
+    let mut command = cargo(toolchain, "build", &recipe);
+    for name in names {
+        command.args(["--example", name]);
+    }
+    let output = command.output().map_err(|cause| FirmwareError::File {
+        path: toolchain.compiler.cargo.clone(),
+        cause,
+    })?;
+    if !output.status.success() {
+        return Err(FirmwareError::Example {
+            names: names.join(", "),
+            output: String::from_utf8_lossy(&output.stderr).trim_end().to_owned(),
+        });
+    }
+    let folder = target_folder().join(TARGET).join("firmware").join("examples");
+    Ok(names.iter().map(|name| folder.join(name)).collect())
 }
 
 /// A cargo command line on the board's crate: `build`, or `clippy`.

@@ -3,7 +3,8 @@
 //! In the order of a render: [`scene`] reads and compiles, [`setup`] and [`firmware`] build the image, [`fleet`] starts the
 //! cores of a [`session`], [`collector`] gathers their pixels on a [`film`], [`reference`](mod@reference) and [`lockstep`] say what
 //! they should have been, [`compare`] and [`difference`] how far off they are, and [`report`] writes it down. [`job`] is
-//! all of that in one call. [`generators`] judges the random numbers by themselves.
+//! all of that in one call. [`generators`] judges the random numbers by themselves, and [`mod@operations`] is the price list
+//! of the arithmetic.
 
 pub mod arithmetic;
 pub mod collector;
@@ -19,6 +20,7 @@ pub mod job;
 pub mod lockstep;
 pub mod memory;
 pub mod openexr;
+pub mod operations;
 pub mod picture;
 pub mod reference;
 pub mod report;

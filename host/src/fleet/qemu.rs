@@ -2,10 +2,10 @@
 
 use std::ffi::OsString;
 use std::fs::{self, File};
-use std::io::{Read, Seek, SeekFrom};
+use std::io::{self, Read, Seek, SeekFrom};
 use std::os::unix::process::{CommandExt, ExitStatusExt};
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, ExitStatus, Stdio};
+use std::process::{Child, Command, ExitStatus, Output, Stdio};
 use std::time::{Duration, Instant};
 
 use super::{FleetError, LAST_LINES};
@@ -51,6 +51,14 @@ pub fn command_line(elf: &Path, boot: Option<&Path>) -> Vec<OsString> {
         arguments.push(format!("loader,addr={BOOT_ADDRESS:#x},file={file},force-raw=on").into());
     }
     arguments
+}
+
+/// Runs an image that needs nobody else on one core, and waits for its end. Its console is the output.
+pub fn run_to_end(qemu: &Path, elf: &Path) -> io::Result<Output> {
+    bound_to_this_process(qemu)
+        .args(command_line(elf, None))
+        .stdin(Stdio::null())
+        .output()
 }
 
 /// One emulated core.
@@ -198,7 +206,7 @@ fn bound_to_this_process(program: &Path) -> Command {
 }
 
 /// The last few lines of a file.
-fn tail(path: &Path) -> std::io::Result<Vec<String>> {
+fn tail(path: &Path) -> io::Result<Vec<String>> {
     let mut file = File::open(path)?;
     let len = file.metadata()?.len();
     file.seek(SeekFrom::Start(len.saturating_sub(TAIL)))?;

@@ -13,6 +13,7 @@ use super::{Job, JobError, Origin};
 use crate::arithmetic::Arithmetic;
 use crate::collector::{Collection, End};
 use crate::compare::{Comparison, compare};
+use crate::firmware::INSTRUCTIONS_PER_TICK;
 use crate::picture::Estimate;
 use crate::reference::{self, cache};
 use crate::report::{self, Cost, LockstepError, Report};
@@ -20,8 +21,6 @@ use crate::{difference, lockstep, openexr};
 
 /// Seed of the reference: any, as long as it stays the same.
 const REFERENCE_SEED: u64 = 0x5eed;
-/// Instructions in a tick of 24 MHz, where an instruction is a nanosecond.
-const INSTRUCTIONS_PER_TICK: f64 = 1000.0 / 24.0;
 
 /// What was collected, and all that a report says of it.
 pub(super) struct Results<'a> {

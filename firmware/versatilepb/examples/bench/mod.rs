@@ -1,0 +1,61 @@
+//! What the price list's images share: the core as a bench, and a console line a row.
+
+use node::{Clock, Words};
+use operations::price::{Bench, called, price};
+use operations::transcript::transcript;
+use operations::{Group, Variant, Visitor};
+use versatilepb::clock::Counter;
+use versatilepb::console;
+use versatilepb::semihosting::{Exit, exit};
+
+struct Core;
+
+impl Bench for Core {
+    fn ticks(&mut self) -> u32 {
+        Counter.ticks()
+    }
+
+    #[inline(always)]
+    fn opaque(mut word: u32) -> u32 {
+        // SAFETY: no instruction at all. That it may touch memory is only what the compiler is told.
+        unsafe { core::arch::asm!("@ {0}", inout(reg) word, options(nostack, preserves_flags)) };
+        word
+    }
+}
+
+/// Prints what it measures.
+struct Printer {
+    row: u32,
+    cases: u32,
+}
+
+/// Prints the rows of a group and ends the program.
+#[inline(always)]
+pub(crate) fn print(group: Group) -> ! {
+    let cases = group.transcript_cases();
+    group.show(&mut Printer { row: 0, cases });
+    exit(Exit::Done)
+}
+
+impl Visitor for Printer {
+    #[inline(never)]
+    fn visit<V: Variant>(&mut self) {
+        let price = price::<V>(&mut Core);
+        let hash = transcript::<V>(self.cases);
+        let mut line = Words::of("row");
+        for word in [
+            self.row,
+            self.cases,
+            price.baseline,
+            price.inline,
+            price.called,
+            (hash >> 32) as u32,
+            hash as u32,
+            called::<V> as *const () as u32,
+        ] {
+            line.and(" ").hexadecimal(word);
+        }
+        console::line(line.as_str());
+        self.row += 1;
+    }
+}

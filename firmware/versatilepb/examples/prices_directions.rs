@@ -1,0 +1,12 @@
+//! Prices and transcripts of unit vectors, ours and the published.
+#![no_std]
+#![no_main]
+
+mod bench;
+
+use operations::Group;
+
+#[aarch32_rt::entry]
+fn start() -> ! {
+    bench::print(Group::Directions)
+}

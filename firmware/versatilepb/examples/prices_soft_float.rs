@@ -1,0 +1,18 @@
+//! Prices and transcripts of single precision in software.
+#![no_std]
+#![no_main]
+
+mod bench;
+
+use operations::Group;
+
+// What no_float.x looks for before it refuses.
+core::arch::global_asm!(
+    ".globl __floating_point_is_measured",
+    ".set __floating_point_is_measured, 1"
+);
+
+#[aarch32_rt::entry]
+fn start() -> ! {
+    bench::print(Group::SoftFloat)
+}

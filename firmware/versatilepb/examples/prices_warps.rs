@@ -1,0 +1,12 @@
+//! Prices and transcripts of points drawn from distributions, ours and the published.
+#![no_std]
+#![no_main]
+
+mod bench;
+
+use operations::Group;
+
+#[aarch32_rt::entry]
+fn start() -> ! {
+    bench::print(Group::Warps)
+}

@@ -1,0 +1,190 @@
+//! Prices and transcripts, taken on an emulated core.
+
+use std::path::{Path, PathBuf};
+use std::{fs, io};
+
+use operations::price::{CASES, ROUNDS};
+use operations::{Group, Maker};
+use rayon::prelude::*;
+
+use super::reach::{Code, Reach};
+use super::{Entry, entries};
+use crate::firmware::{self, FirmwareError, INSTRUCTIONS_PER_TICK};
+use crate::fleet;
+use crate::setup::Toolchain;
+
+/// A row as a core has measured it.
+#[derive(Clone, Debug)]
+pub struct Measurement {
+    /// The row.
+    pub entry: Entry,
+    /// Instructions in line.
+    pub instructions: f64,
+    /// Instructions as a called function.
+    pub called_instructions: f64,
+    /// The called function.
+    pub reach: Reach,
+}
+
+/// Why there are no prices.
+#[derive(Debug, thiserror::Error)]
+pub enum BenchError {
+    /// There is no image.
+    #[error(transparent)]
+    Firmware(#[from] FirmwareError),
+    /// The emulator could not be started.
+    #[error("cannot start {}: {cause}", program.display())]
+    Start {
+        /// The program.
+        program: PathBuf,
+        /// What the system said.
+        cause: io::Error,
+    },
+    /// The core did not do its work.
+    #[error("{image}: the core ended with {status}, and said:\n{said}")]
+    Core {
+        /// The image.
+        image: String,
+        /// How QEMU ended.
+        status: String,
+        /// The console.
+        said: String,
+    },
+    /// The image's file cannot be read as one.
+    #[error("{}: {cause}; remove the file, and it is built anew", path.display())]
+    Elf {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        cause: String,
+    },
+    /// Core and host differ.
+    #[error(
+        "{operation}, {variant}: the core's answers are not the host's (transcripts {core:016x} and {host:016x} of \
+         {cases} cases); one of the two compilers, or the emulator, computes something else"
+    )]
+    Transcript {
+        /// What is done.
+        operation: &'static str,
+        /// By which function.
+        variant: &'static str,
+        /// The core's hash.
+        core: u64,
+        /// The host's hash.
+        host: u64,
+        /// Cases in it.
+        cases: u32,
+    },
+}
+
+/// Builds and runs the images of all groups, and compares every transcript with the host's.
+pub fn measure(toolchain: &Toolchain, qemu: &Path) -> Result<Vec<Measurement>, BenchError> {
+    let names = Group::ALL.map(image_name);
+    let images = firmware::build_examples(toolchain, &names)?;
+    let pairs: Vec<(Group, PathBuf)> = Group::ALL.into_iter().zip(images).collect();
+    let groups: Vec<Vec<Measurement>> = pairs
+        .into_par_iter()
+        .map(|(group, elf)| measure_group(qemu, group, &elf))
+        .collect::<Result<_, _>>()?;
+    Ok(groups.concat())
+}
+
+/// The name of a group's image.
+pub fn image_name(group: Group) -> String {
+    format!("prices_{}", group.name())
+}
+
+fn measure_group(qemu: &Path, group: Group, elf: &Path) -> Result<Vec<Measurement>, BenchError> {
+    let output = fleet::run_to_end(qemu, elf).map_err(|cause| BenchError::Start {
+        program: qemu.to_owned(),
+        cause,
+    })?;
+    let said = String::from_utf8_lossy(&output.stdout);
+    let failed = || BenchError::Core {
+        image: image_name(group),
+        status: output.status.to_string(),
+        said: format!("{said}{}", String::from_utf8_lossy(&output.stderr)),
+    };
+    let lines: Vec<Line> = said.lines().filter_map(Line::parse).collect();
+    let entries = entries(group);
+    if !output.status.success() || lines.len() != entries.len() {
+        return Err(failed());
+    }
+    let damaged = |cause: String| BenchError::Elf {
+        path: elf.to_owned(),
+        cause,
+    };
+    let bytes = fs::read(elf).map_err(|cause| damaged(cause.to_string()))?;
+    let code = Code::of(&bytes).map_err(damaged)?;
+    let rows = entries.into_par_iter().zip(lines);
+    rows.map(|(entry, line)| {
+        compare(&entry, &line)?;
+        let reach = code.from(line.address.into()).ok_or_else(failed)?;
+        Ok(Measurement {
+            entry,
+            instructions: line.instructions(line.inline),
+            called_instructions: line.instructions(line.called),
+            reach,
+        })
+    })
+    .collect()
+}
+
+fn compare(entry: &Entry, line: &Line) -> Result<(), BenchError> {
+    let host = (entry.transcript)(line.cases);
+    if host == line.transcript {
+        return Ok(());
+    }
+    Err(BenchError::Transcript {
+        operation: entry.operation,
+        variant: entry.variant,
+        core: line.transcript,
+        host,
+        cases: line.cases,
+    })
+}
+
+/// A row's line on the console: `row` and eight words in hexadecimal.
+#[derive(Clone, Copy, Debug)]
+struct Line {
+    cases: u32,
+    baseline: u32,
+    inline: u32,
+    called: u32,
+    transcript: u64,
+    address: u32,
+}
+
+impl Line {
+    fn parse(text: &str) -> Option<Self> {
+        let words = text.trim().strip_prefix("row ")?;
+        let words: Vec<u32> = words
+            .split(' ')
+            .map(|word| u32::from_str_radix(word, 16))
+            .collect::<Result<_, _>>()
+            .ok()?;
+        let [_row, cases, baseline, inline, called, high, low, address] = words.try_into().ok()?;
+        Some(Self {
+            cases,
+            baseline,
+            inline,
+            called,
+            transcript: u64::from(high) << 32 | u64::from(low),
+            address,
+        })
+    }
+
+    /// Instructions of one operation in a loop that took so many ticks, to the hundredth.
+    fn instructions(&self, ticks: u32) -> f64 {
+        let operations = f64::from(ROUNDS) * CASES as f64;
+        let ticks = f64::from(ticks) - f64::from(self.baseline);
+        (ticks * INSTRUCTIONS_PER_TICK / operations * 100.0).round() / 100.0
+    }
+}
+
+impl Measurement {
+    /// Whether a user would have to take it from elsewhere.
+    pub fn is_rival(&self) -> bool {
+        matches!(self.entry.maker, Maker::Rival(_))
+    }
+}

@@ -1,0 +1,37 @@
+//! `cargo xtask bench ops`
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use anyhow::Context;
+use host::operations;
+use host::setup::{self, Wanted};
+
+use crate::SetUp;
+
+/// Arguments of `bench ops`.
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// Write the list as JSON, too
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+    #[command(flatten)]
+    set_up: SetUp,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
+    let wanted = Wanted {
+        qemu: true,
+        firmware: true,
+        ..Wanted::default()
+    };
+    let tools = setup::ensure(wanted, arguments.set_up.install())?;
+    let toolchain = tools.firmware.context("set-up gave no compiler")?;
+    let rows = operations::prices(&toolchain, &tools.qemu.context("set-up gave no QEMU")?)?;
+    print!("{}", operations::table::table(&rows));
+    if let Some(path) = &arguments.json {
+        let json = serde_json::to_string_pretty(&rows)?;
+        std::fs::write(path, json + "\n").with_context(|| format!("cannot write {}", path.display()))?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
