@@ -34,7 +34,7 @@ pub const fn natural(x: I16F16) -> I16F16 {
         return I16F16::ZERO;
     }
     // x has 21 bits here; the exponent of 2 in 18:46.
-    let exponent = x as i64 * LOG2_E as i64 - (x * EXCESS >> 11) as i64;
+    let exponent = x as i64 * LOG2_E as i64 - ((x * EXCESS) >> 11) as i64;
     let whole = (exponent >> 46) as i32;
     let fraction = (exponent >> 14) as u32;
     // 1:31, to be shifted right by 15 - whole, which is 1 to 32.

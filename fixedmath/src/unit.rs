@@ -47,7 +47,7 @@ pub const fn checked_length(v: [I16F16; 3]) -> Option<I16F16> {
     }
 }
 
-/// The direction of a 16:16 vector: each component within 3 ulp of 2^-30, the length within 2^-28 of 1, for every vector
+/// The direction of a 16:16 vector: each component within 4 ulp of 2^-30, the length within 2^-28 of 1, for every vector
 /// but zero, which gives zero.
 ///
 /// ```
@@ -70,7 +70,7 @@ pub fn checked_of_vector(v: [I16F16; 3]) -> Option<[I2F30; 3]> {
     }
 }
 
-/// `v` brought to unit length: each component within 3 ulp of 2^-30. Zero gives zero.
+/// `v` brought to unit length: each component within 4 ulp of 2^-30. Zero gives zero.
 ///
 /// Components may have any magnitude the format holds; the longest vector has length sqrt(12).
 ///
@@ -95,7 +95,7 @@ pub fn checked_normalised(v: [I2F30; 3]) -> Option<[I2F30; 3]> {
     Some(direction(unit_bits(v), square))
 }
 
-/// The direction halfway between two unit vectors: half their sum brought to unit length, each component within 3 ulp of
+/// The direction halfway between two unit vectors: half their sum brought to unit length, each component within 4 ulp of
 /// 2^-30, or `None` where they are opposite to within 2^-14.
 #[inline]
 pub fn checked_bisector(a: [I2F30; 3], b: [I2F30; 3]) -> Option<[I2F30; 3]> {

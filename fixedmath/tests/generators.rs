@@ -38,7 +38,7 @@ fn each_bit_has_its_own_period() {
     };
     let first = fraction_after(0);
     for bit in 0..32 {
-        let below = (2 << bit) - 1;
+        let below = u32::MAX >> (31 - bit);
         let (half, whole) = (1 << (32 + bit), (1u64 << (32 + bit)).wrapping_mul(2));
         assert_eq!((fraction_after(half) ^ first) & below, 1 << bit, "bit {bit}");
         assert_eq!((fraction_after(whole) ^ first) & below, 0, "bit {bit}");
