@@ -215,7 +215,7 @@ const fn lines() -> [[u32; 2]; 32] {
 
 #[cfg(test)]
 mod tests {
-    use super::reciprocal_of_normal;
+    use super::{quotient, reciprocal_of_normal};
 
     /// How far the reciprocal lies below 2^63 / `d`, times `d`.
     fn shortfall(d: u32) -> u64 {
@@ -226,16 +226,26 @@ mod tests {
     ///
     /// It is the upper word of `dividend inverse`, so an inverse short by s makes it short by less than 1 + s n / 2^32, where
     /// n is the dividend as it is multiplied. It is cut to a whole number, so it is one less at most where s n / 2^32 is
-    /// at most 1. Divisors below 2^17 ulp can be checked one by one, with the largest dividend whose quotient fits. Larger
-    /// ones shift the product right by one place or more, which halves what is short: there s may be 2.
+    /// at most 1. Divisors below 2^17 ulp can be checked one by one, with the largest dividend whose quotient fits; for five of
+    /// them the largest dividends exceed that 1 by 4e-4, and are checked one by one as well. Larger divisors shift the
+    /// product right by one place or more, which halves what is short: there s may be 2.
     #[test]
     fn quotients_are_at_most_one_too_small() {
         for divisor in 1u32..1 << 17 {
             let shift = divisor.leading_zeros();
-            let d = divisor << shift;
-            let largest = ((u64::from(divisor) << 15) - 1).min(1 << 31) << (shift - 15);
-            let short = u128::from(shortfall(d)) * u128::from(largest);
-            assert!(short <= u128::from(d) << 32, "{divisor}");
+            let d = u128::from(divisor << shift);
+            let short = u128::from(shortfall(divisor << shift));
+            let largest = ((u64::from(divisor) << 15) - 1).min(1 << 31) as u32;
+            // The least n for which s n / 2^32 exceeds 1.
+            let critical = ((d << 32) / short + 1) >> (shift - 15);
+            for dividend in critical.min(1 << 31) as u32..=largest {
+                let exact = (u64::from(dividend) << 17) / u64::from(divisor);
+                assert_eq!(
+                    u64::from(quotient(dividend, divisor)),
+                    exact.div_ceil(2),
+                    "{dividend} / {divisor}"
+                );
+            }
         }
         for step in 0..1 << 22 {
             let d = 1 << 31 | step << 9 | step >> 13;
