@@ -10,6 +10,8 @@ pub mod arithmetic;
 pub mod collector;
 pub mod compare;
 pub mod difference;
+pub mod direct;
+mod drawing;
 pub mod file;
 pub mod film;
 pub mod firmware;

@@ -2,14 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
+use host::direct;
 use host::film::Film;
-use host::lockstep;
 use host::picture::Estimate;
 use host::scene::{Scene, compile};
-use rayon::prelude::*;
 use tracer::profile::Profile;
-use tracer::scene::All;
-use tracer::unit::{Plan, RUN, Termination, render};
+use tracer::unit::{Plan, Termination};
 
 /// A file of the repository.
 pub fn repository(path: &str) -> PathBuf {
@@ -40,29 +38,10 @@ pub fn plan<P: Profile>(width: u16, height: u16, spp: u32) -> Plan {
 /// The film that any fleet must end with, rendered unit by unit in this process.
 ///
 /// # Panics
-/// If the compiled scene is refused, or a unit does not fit the film.
+/// If the compiled scene is refused.
 pub fn film<P: Profile>(scene: &Scene, plan: &Plan) -> Film {
     let blob = compile(scene, plan.width, plan.height).blob;
-    let units = plan.units().expect("unit ids fit 32 bits");
-    let sums: Vec<_> = (0..units)
-        .into_par_iter()
-        .map_init(
-            || tracer::scene::Scene::<P::Numbers>::decode::<All>(&blob).expect("a compiled scene is decoded"),
-            |scene, id| {
-                let mut sums = [[0; 3]; RUN];
-                render::<P, All>(scene, plan, id, &mut sums);
-                sums
-            },
-        )
-        .collect();
-    let mut film = Film::new(plan.width, plan.height);
-    for (id, sums) in (0..units).zip(&sums) {
-        let extent = plan.extent(id);
-        let run = &sums[..usize::from(extent.pixels)];
-        film.add(extent.first_pixel, extent.samples.into(), run)
-            .expect("units lie within the film");
-    }
-    film
+    direct::film::<P>(&blob, plan).expect("a compiled scene is decoded")
 }
 
 /// `P`'s picture, with the variance that the lockstep oracle measures on the same paths.
@@ -71,10 +50,5 @@ pub fn film<P: Profile>(scene: &Scene, plan: &Plan) -> Film {
 /// If the compiled scene is refused.
 pub fn estimate<P: Profile>(scene: &Scene, plan: &Plan) -> (Estimate, Estimate) {
     let blob = compile(scene, plan.width, plan.height).blob;
-    let lockstep = lockstep::render::<P>(&blob, plan, |_| ()).expect("a compiled scene is decoded");
-    let fixed = Estimate {
-        picture: film::<P>(scene, plan).picture(),
-        ..lockstep.clone()
-    };
-    (fixed, lockstep)
+    direct::estimate::<P>(&blob, plan).expect("a compiled scene is decoded")
 }

@@ -3,59 +3,30 @@
 //! The large map shows every pixel's difference, blue where the picture is darker than the reference and red where it
 //! is brighter. Below it stand both pictures as a display shows them and a map of the tile test, in which an error shows
 //! long before the eye finds it in the pixels' noise.
-//!
-//! The labels are set in DejaVu Sans, which comes within the binary: the machines this runs on may have no font at all,
-//! and the pictures should look the same everywhere.
 
 use std::path::Path;
 
-use image::ImageEncoder;
-use image::codecs::png::PngEncoder;
-use plotters::coord::Shift;
-use plotters::prelude::*;
-use plotters::style::register_font;
-use plotters::style::text_anchor::{HPos, Pos, VPos};
+use plotters::prelude::BLACK;
+use plotters::style::text_anchor::{HPos, VPos};
 
 use crate::compare::{Comparison, SIDE};
-use crate::file::{WriteError, write_whole};
+use crate::drawing::{
+    Canvas, DrawingError, GAP, LARGE, MARGIN, NORMAL, Raster, SMALL, blit, diverging, draw_on, enlarged,
+    outline, signed, text, write_png,
+};
+use crate::file::WriteError;
 use crate::picture::Picture;
 
-type Canvas<'a> = DrawingArea<BitMapBackend<'a>, Shift>;
-type DrawingError = Box<dyn std::error::Error + Send + Sync>;
-
-const FONT: &str = "DejaVu Sans";
 /// What the map is enlarged to fill, by a whole factor.
 const MAP: (u32, u32) = (768, 576);
 /// Room for the title lines at the shortest; a narrow map stands in the middle.
 const NARROWEST: u32 = 800;
-/// Text sizes in pixels; even, because plotters truncates the baseline of odd ones to uneven lines.
-const LARGE: u32 = 20;
-const NORMAL: u32 = 16;
-const SMALL: u32 = 12;
-const MARGIN: u32 = 24;
-const GAP: u32 = 16;
 const HEADER: u32 = 92;
 const CAPTION: u32 = 24;
 const BAR: u32 = 20;
 const BAR_LABELS: u32 = 88;
 /// A pixel that one of the pictures lacks.
 const MISSING: [u8; 3] = [0, 0, 0];
-/// From darker than the reference to brighter; of equal perceived steps, and distinct for the colour-blind.
-const DIVERGING: [[f64; 3]; 5] = [
-    [5.0, 48.0, 97.0],
-    [67.0, 147.0, 195.0],
-    [247.0, 247.0, 247.0],
-    [214.0, 96.0, 77.0],
-    [103.0, 0.0, 31.0],
-];
-
-/// Pixels of a finished drawing.
-struct Raster {
-    width: u32,
-    height: u32,
-    rgb: Vec<u8>,
-}
-
 /// Draws the difference of `image` from `reference` into a PNG file. `comparison` must be of these two.
 pub fn write(
     path: &Path,
@@ -64,17 +35,7 @@ pub fn write(
     reference: &Picture,
     comparison: &Comparison,
 ) -> Result<(), WriteError> {
-    write_whole(path, |writer| {
-        let drawing = draw(title, image, reference, comparison)?;
-        PngEncoder::new(writer)
-            .write_image(
-                &drawing.rgb,
-                drawing.width,
-                drawing.height,
-                image::ExtendedColorType::Rgb8,
-            )
-            .map_err(DrawingError::from)
-    })
+    write_png(path, || draw(title, image, reference, comparison))
 }
 
 /// Where everything goes.
@@ -110,14 +71,9 @@ fn draw(
     reference: &Picture,
     comparison: &Comparison,
 ) -> Result<Raster, DrawingError> {
-    register_font(FONT, FontStyle::Normal, dejavu::sans::regular())
-        .map_err(|_| "the built-in font is damaged")?;
     let layout = Layout::new(image.size());
-    let mut rgb = vec![0; (layout.width * layout.height * 3) as usize];
-    {
-        let canvas = BitMapBackend::with_buffer(&mut rgb, (layout.width, layout.height)).into_drawing_area();
-        canvas.fill(&WHITE)?;
-        header(&canvas, title, comparison)?;
+    draw_on(layout.width, layout.height, |canvas| {
+        header(canvas, title, comparison)?;
         let differences = differences(image, reference);
         let range = range(&differences);
         let top = MARGIN + HEADER;
@@ -125,20 +81,14 @@ fn draw(
             .iter()
             .map(|d| d.map_or(MISSING, |d| diverging(d / range)));
         let map = enlarged(&colours.collect::<Vec<_>>(), image.size(), layout.map);
-        blit(&canvas, (layout.map_left, top), layout.map, map)?;
+        blit(canvas, (layout.map_left, top), layout.map, map)?;
         colour_bar(
-            &canvas,
+            canvas,
             (layout.map_left + layout.map.0 + GAP, top),
             layout.map.1,
             range,
         )?;
-        panels(&canvas, &layout, image, reference, comparison)?;
-        canvas.present()?;
-    }
-    Ok(Raster {
-        width: layout.width,
-        height: layout.height,
-        rgb,
+        panels(canvas, &layout, image, reference, comparison)
     })
 }
 
@@ -316,7 +266,7 @@ fn colour_bar(canvas: &Canvas<'_>, place: (u32, u32), height: u32, range: f64) -
 }
 
 /// Mean difference over the channels of every pixel that both pictures have.
-fn differences(image: &Picture, reference: &Picture) -> Vec<Option<f64>> {
+pub(crate) fn differences(image: &Picture, reference: &Picture) -> Vec<Option<f64>> {
     let both = image.pixels().iter().zip(reference.pixels());
     both.map(|(one, other)| {
         let (one, other) = ((*one)?, (*other)?);
@@ -340,75 +290,6 @@ fn range(differences: &[Option<f64>]) -> f64 {
         .find(|step| step * decade >= most)
         .unwrap_or(10.0);
     step * decade
-}
-
-/// The colour of `share`, from -1 (darker) to 1 (brighter); beyond, the ends.
-fn diverging(share: f64) -> [u8; 3] {
-    let last = DIVERGING.len() - 1;
-    let position = (share.clamp(-1.0, 1.0) + 1.0) / 2.0 * last as f64;
-    let below = (position as usize).min(last - 1);
-    let part = position - below as f64;
-    [0, 1, 2].map(|c| ((1.0 - part) * DIVERGING[below][c] + part * DIVERGING[below + 1][c]).round() as u8)
-}
-
-/// Nearest-neighbour scaling: a pixel stays a square.
-fn enlarged(pixels: &[[u8; 3]], (width, height): (u16, u16), to: (u32, u32)) -> Vec<u8> {
-    let (width, height) = (usize::from(width), usize::from(height));
-    let (columns, rows) = (to.0 as usize, to.1 as usize);
-    let mut out = Vec::with_capacity(3 * columns * rows);
-    for y in 0..rows {
-        for x in 0..columns {
-            out.extend(pixels[y * height / rows * width + x * width / columns]);
-        }
-    }
-    out
-}
-
-fn blit(canvas: &Canvas<'_>, place: (u32, u32), size: (u32, u32), rgb: Vec<u8>) -> Result<(), DrawingError> {
-    let bitmap = BitMapElement::with_owned_buffer(signed_place(place), size, rgb)
-        .ok_or("a panel has the wrong size")?;
-    Ok(canvas.draw(&bitmap)?)
-}
-
-fn outline(
-    canvas: &Canvas<'_>,
-    place: (u32, u32),
-    size: (u32, u32),
-    colour: &RGBColor,
-) -> Result<(), DrawingError> {
-    let (left, top) = signed_place(place);
-    let (width, height) = signed_place(size);
-    let corners = [(left, top), (left + width - 1, top + height - 1)];
-    Ok(canvas.draw(&Rectangle::new(corners, colour.stroke_width(1)))?)
-}
-
-fn text(
-    canvas: &Canvas<'_>,
-    line: &str,
-    size: u32,
-    place: (u32, u32),
-    horizontal: HPos,
-    vertical: VPos,
-) -> Result<(), DrawingError> {
-    let style = TextStyle::from((FONT, size).into_font()).pos(Pos::new(horizontal, vertical));
-    Ok(canvas.draw(&Text::new(line.to_owned(), signed_place(place), style))?)
-}
-
-/// A place in the drawing as plotters wants it; drawings have less than 2^31 pixels a side.
-fn signed_place((x, y): (u32, u32)) -> (i32, i32) {
-    (x as i32, y as i32)
-}
-
-/// A number with its sign, also a plus, and a true minus.
-fn signed(value: f64, decimals: usize) -> String {
-    let digits = format!("{:.decimals$}", value.abs());
-    let is_zero = digits.bytes().all(|digit| matches!(digit, b'0' | b'.'));
-    let sign = match value {
-        _ if is_zero => "",
-        value if value < 0.0 => "−",
-        _ => "+",
-    };
-    format!("{sign}{digits}")
 }
 
 #[cfg(test)]

@@ -1,12 +1,15 @@
 //! `cargo xtask bench generators`
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::Context;
 use host::generators::dieharder::Assessment;
 use host::generators::judgement::{self, Judgement, Streams};
+use host::generators::low_bits::{Effect, Pictures};
 use host::generators::uniformity::{FALSE_ALARM, Power, SURE, Uniformity};
+use host::reference::{self, cache};
+use host::scene::Scene;
 use host::setup::{self, Wanted};
 use serde::Serialize;
 
@@ -21,6 +24,9 @@ pub(crate) struct Arguments {
     /// Write the judgement as JSON, too
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
+    /// Draw what the published low bits do to a picture as a PNG file: minutes
+    #[arg(long, value_name = "FILE")]
+    picture: Option<PathBuf>,
     #[command(flatten)]
     set_up: SetUp,
 }
@@ -30,12 +36,14 @@ pub(crate) struct Arguments {
 struct Found {
     generators: Vec<Judgement>,
     streams: Streams,
+    low_bits: Option<Effect>,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
     let mut found = Found {
         generators: judgement::judge().into(),
         streams: judgement::streams(),
+        low_bits: None,
     };
     println!("{}", lattices(&found));
     println!("{}", layout(&found.streams));
@@ -43,6 +51,9 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
     if arguments.dieharder {
         run_dieharder(&mut found.generators, &arguments.set_up)?;
         println!("\n{}", batteries(&found.generators));
+    }
+    if let Some(path) = &arguments.picture {
+        found.low_bits = Some(draw(path)?);
     }
     if let Some(path) = &arguments.json {
         let json = serde_json::to_string_pretty(&found)?;
@@ -64,6 +75,39 @@ fn run_dieharder(generators: &mut [Judgement], set_up: &SetUp) -> anyhow::Result
         judged.dieharder = rows;
     }
     Ok(())
+}
+
+/// Draws the standard scene with either generator.
+fn draw(path: &Path) -> anyhow::Result<Effect> {
+    let scene = Scene::load(Path::new("scenes/cornell.toml"))?;
+    let job = reference::Job {
+        width: 256,
+        height: 192,
+        spp: 4096,
+        termination: reference::Termination::Roulette,
+        seed: 0x5eed,
+    };
+    let (reference, _) = cache::reference(Path::new("out/.references"), &scene, &job, |_| ())?;
+    let pictures = Pictures::render(&scene, 1024, reference);
+    pictures.write(path)?;
+    let effect = pictures.effect()?;
+    for (bits, figures) in [
+        ("upper 32 of 64", effect.full_state),
+        ("lower 16 of 32", effect.low_bits),
+    ] {
+        println!(
+            "{bits}: bias {:+.3} % (standard error {:.3} %), rmse {:.5}, {} of {} tile tests fail, errors correlate by \
+             up to {:+.4} at {:?}",
+            100.0 * figures.bias.unwrap_or(f64::NAN),
+            100.0 * figures.bias_standard_error.unwrap_or(f64::NAN),
+            figures.rmse,
+            figures.tiles_failed,
+            figures.tiles,
+            figures.correlation,
+            figures.correlation_at
+        );
+    }
+    Ok(effect)
 }
 
 fn batteries(generators: &[Judgement]) -> String {

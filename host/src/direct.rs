@@ -1,0 +1,50 @@
+//! A picture without a fleet: every unit in this process, on all of its cores.
+
+use rayon::prelude::*;
+use tracer::profile::Profile;
+use tracer::scene::{All, BlobError, Scene};
+use tracer::unit::{Plan, RUN, render};
+
+use crate::film::Film;
+use crate::lockstep;
+use crate::picture::Estimate;
+
+/// The film that any fleet must end with.
+///
+/// # Panics
+/// If the plan has more units than there are ids.
+pub fn film<P: Profile>(blob: &[u8], plan: &Plan) -> Result<Film, BlobError> {
+    let units = plan.units().expect("unit ids fit 32 bits");
+    let render_unit = |scene: &mut Result<Scene<P::Numbers>, BlobError>, id| {
+        let scene = scene.as_ref().map_err(|error| *error)?;
+        let mut sums = [[0; 3]; RUN];
+        render::<P, All>(scene, plan, id, &mut sums);
+        Ok(sums)
+    };
+    // A scene's numbers need not be fit to be shared between threads, so each thread has its own.
+    let sums: Vec<_> = (0..units)
+        .into_par_iter()
+        .map_init(|| Scene::decode::<All>(blob), render_unit)
+        .collect::<Result<_, _>>()?;
+    let mut film = Film::new(plan.width, plan.height);
+    for (id, sums) in (0..units).zip(&sums) {
+        let extent = plan.extent(id);
+        let run = &sums[..usize::from(extent.pixels)];
+        film.add(extent.first_pixel, extent.samples.into(), run)
+            .expect("units lie within the film");
+    }
+    Ok(film)
+}
+
+/// The film's picture with the variance that the lockstep oracle measures on the same paths, and the oracle's own.
+///
+/// # Panics
+/// If the plan has more units than there are ids.
+pub fn estimate<P: Profile>(blob: &[u8], plan: &Plan) -> Result<(Estimate, Estimate), BlobError> {
+    let lockstep = lockstep::render::<P>(blob, plan, |_| ())?;
+    let fixed = Estimate {
+        picture: film::<P>(blob, plan)?.picture(),
+        ..lockstep.clone()
+    };
+    Ok((fixed, lockstep))
+}
