@@ -212,7 +212,7 @@ fn figures(image: &Estimate, reference: &Estimate) -> Result<Figures, CompareErr
     })
 }
 
-/// The largest correlation of two errors up to [`REACH`] apart, each in units of its own noise, and where it is.
+/// The largest correlation of two errors up to [`REACH`] apart, across to the right and down, each in units of its own noise, and where it is.
 fn correlation(image: &Estimate, reference: &Estimate) -> (f64, (usize, usize)) {
     let (width, height) = image.picture.size();
     let (width, height) = (usize::from(width), usize::from(height));
@@ -249,6 +249,9 @@ fn correlation(image: &Estimate, reference: &Estimate) -> (f64, (usize, usize)) 
 
 #[cfg(test)]
 mod tests {
+    use rand_xoshiro::Xoshiro256PlusPlus;
+    use rand_xoshiro::rand_core::{Rng, SeedableRng};
+
     use super::*;
     use crate::firmware::workspace;
     use crate::reference::{self, Job};
@@ -266,14 +269,38 @@ mod tests {
         Pictures::render(&scene, spp, reference)
     }
 
-    /// Independent samples leave each pixel with an error of its own; the low bits weave a pattern.
+    /// A picture of errors that are noise, and a share of the noise 3 across and 2 up; one pixel has no noise at all.
+    fn noisy(share: f64) -> (Estimate, Estimate) {
+        const SIZE: (u16, u16) = (64, 48);
+        let mut random = Xoshiro256PlusPlus::seed_from_u64(1);
+        let noise: Vec<f64> = (0..50 * 67)
+            .map(|_| f64::from(random.next_u32()) / 2f64.powi(31) - 1.0)
+            .collect();
+        let places = (0..48).flat_map(|y| (0..64).map(move |x| (x, y)));
+        let mut pixels: Vec<_> = places
+            .map(|(x, y)| Some([noise[(y + 2) * 67 + x + 3] + share * noise[y * 67 + x]; 3]))
+            .collect();
+        let mut variance = vec![[1.0; 3]; pixels.len()];
+        (pixels[1000], variance[1000]) = (Some([1e-3; 3]), [1e-30; 3]);
+        let estimate = |pixels, variance| Estimate {
+            picture: Picture::new(SIZE.0, SIZE.1, pixels),
+            variance,
+            spp: None,
+        };
+        let reference = estimate(vec![Some([0.0; 3]); variance.len()], None);
+        (estimate(pixels, Some(variance)), reference)
+    }
+
     #[test]
-    fn the_low_bits_errors_hang_together() {
-        let effect = pictures(64, 48, 256).effect().expect("pictures of one size");
-        // Of 288 correlations of 3,072 white errors none is beyond 5 standard deviations.
+    fn errors_that_hang_together_are_found_where_they_are() {
+        // Of 288 correlations of 3,072 errors none is further off than 5 standard deviations.
         let chance = 5.0 / (64.0 * 48.0f64).sqrt();
-        assert!(effect.full_state.correlation.abs() < chance, "{effect:?}");
-        assert!(effect.low_bits.correlation.abs() > chance, "{effect:?}");
+        let (image, reference) = noisy(0.0);
+        assert!(correlation(&image, &reference).0.abs() < chance);
+        let (image, reference) = noisy(0.5);
+        let (found, at) = correlation(&image, &reference);
+        assert!((found - 0.5 / 1.25).abs() < chance, "{found}");
+        assert_eq!(at, (3, 2));
     }
 
     #[test]
