@@ -241,27 +241,26 @@ pub fn build_examples(toolchain: &Toolchain, names: &[String]) -> Result<Vec<Pat
 
 /// A cargo command line on the board's crate: `build`, or `clippy`.
 pub fn cargo(toolchain: &Toolchain, verb: &str, recipe: &Recipe) -> Command {
+    let mut command = cargo_for(toolchain, verb, BOARD, TARGET);
+    command
+        .env("TRACER_PROFILE", recipe.profile.name())
+        .env("TRACER_NEEDS", recipe.words());
+    command
+}
+
+/// A cargo command line on any crate of ours for any processor, whose `core` is built along.
+pub fn cargo_for(toolchain: &Toolchain, verb: &str, package: &str, target: &str) -> Command {
     let mut command = Command::new(&toolchain.compiler.cargo);
     command
         .current_dir(workspace())
-        .args([
-            verb,
-            "--locked",
-            "--profile",
-            "firmware",
-            "--package",
-            BOARD,
-            "--target",
-            TARGET,
-        ])
+        .args([verb, "--locked", "--profile", "firmware"])
+        .args(["--package", package, "--target", target])
         .args(["-Zbuild-std=core", "--target-dir"])
         .arg(target_folder())
         .env("RUSTC", &toolchain.compiler.rustc)
         // What lets a stable compiler build its own library.
         .env("RUSTC_BOOTSTRAP", "1")
         .env("CARGO_TARGET_ARMV5TE_NONE_EABI_LINKER", &toolchain.linker)
-        .env("TRACER_PROFILE", recipe.profile.name())
-        .env("TRACER_NEEDS", recipe.words())
         // Cargo's subcommands must be of the same toolchain.
         .env("PATH", path_from(toolchain.compiler.cargo.parent()))
         // Flags meant for the host's programs are not for a board's.

@@ -37,6 +37,22 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
         succeed(cargo(&["clippy", "--all-targets", "--", "--deny", "warnings"]))
     })?;
     step("firmware lints", || lint_firmware(&toolchain, &scene))?;
+    step("fixedmath for a Cortex-M0, and as a package", || {
+        succeed(firmware::cargo_for(
+            &toolchain,
+            "build",
+            "fixedmath",
+            "thumbv6m-none-eabi",
+        ))?;
+        succeed(cargo(&[
+            "package",
+            "--quiet",
+            "--offline",
+            "--allow-dirty",
+            "--package",
+            "fixedmath",
+        ]))
+    })?;
     // With overflow checks and debug assertions, where arithmetic could wrap or panic in one build and not in the other.
     step("tests, checked build", || {
         shown(cargo(&[
