@@ -136,6 +136,6 @@ fn pictures_are_the_golden_ones_to_the_bit() {
 }
 
 const GOLDEN: [&str; 2] = [
-    "009c9189269690269a95a4ef67ce3a61d2beb59b9b675e4bb7981bc55d72695c",
+    "3a3eee5d5f9ba417dba5749f23e6182b28d2f44d56e16d02de7b949214e6d826",
     "3e19da610219518bcf7fa47fba4fc0a658556deb181bfb8137694b8444a3d114",
 ];
