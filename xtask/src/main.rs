@@ -5,6 +5,7 @@ mod qemu_run;
 mod render;
 mod size;
 mod test;
+mod verify;
 
 use std::process::ExitCode;
 
@@ -29,6 +30,11 @@ enum Verb {
     /// Measure parts by themselves
     #[command(subcommand)]
     Bench(bench::Bench),
+    /// Compare the arithmetic with the truth, over a sample or over all inputs
+    ///
+    /// A sample must not be worse than the record of the exhaustive run, fixedmath/proof.json, and another exhaustive run
+    /// must find what it says.
+    Verify(verify::Arguments),
 }
 
 /// The flag that several verbs share.
@@ -67,6 +73,7 @@ fn main() -> ExitCode {
         Verb::QemuRun(arguments) => qemu_run::run(&arguments),
         Verb::Size(arguments) => size::run(&arguments),
         Verb::Bench(bench) => bench::run(&bench),
+        Verb::Verify(arguments) => verify::run(&arguments),
     };
     done.unwrap_or_else(|error| {
         eprintln!("error: {}", message(&error));

@@ -10,7 +10,7 @@ use host::firmware::{self, Recipe};
 use host::scene::{Scene, compile};
 use host::setup::{self, Toolchain, Wanted};
 
-use crate::{SetUp, size};
+use crate::{SetUp, size, verify};
 
 /// Arguments of `test`.
 #[derive(clap::Args)]
@@ -80,6 +80,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
             "whole-system",
         ]))
     })?;
+    step("arithmetic against the truth", || verify::sampled().map(|_| ()))?;
     let rows = step("firmware", || size::measure(&toolchain, &scene))?;
     println!("{}", size::table(&rows));
     step("whole system", || {

@@ -4,7 +4,7 @@ use fixedmath::random::Lcg64;
 use fixedmath::{I2F30, I16F16, I32F32, I48F16, unit};
 
 /// A value of one or more 32-bit words.
-pub trait Number: Copy + 'static {
+pub trait Number: Copy + Send + 'static {
     /// The value with each of its words, in order, replaced by what `word` makes of it.
     fn through(&self, word: &mut impl FnMut(u32) -> u32) -> Self;
 

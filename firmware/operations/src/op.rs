@@ -1,7 +1,7 @@
 //! The operations: a marker each.
 
 use fixedmath::random::Lcg64;
-use fixedmath::{I2F30, I16F16, I32F32, I48F16};
+use fixedmath::{I2F30, I16F16, I32F32, I48F16, product, warp};
 
 use crate::number::{Direction, Exponent, Fraction, Turn};
 use crate::{Operation, hard};
@@ -175,5 +175,10 @@ operations! {
     /// A point of the unit sphere.
     Sphere "point of the sphere" = Sphere, UNIT, "all": (Fraction, Turn) => [I2F30; 3];
     /// A direction in proportion to its cosine with a normal.
-    DiffuseDirection "cosine-weighted direction" = OffsetSphere, UNIT, "all": (Direction, Fraction, Turn) => [I2F30; 3];
+    DiffuseDirection "cosine-weighted direction" = OffsetSphere, UNIT, "point 2^-6 or more from the normal's antipode":
+        (Direction, Fraction, Turn) => [I2F30; 3],
+        if |(Direction(normal), Fraction(height), Turn(turn))| {
+            // Two unit vectors with cosine c have a sum of length sqrt(2 + 2 c).
+            product::cosine(normal, warp::sphere(height, turn)) > I2F30::from_bits((1 << 17) - (1 << 30))
+        };
 }

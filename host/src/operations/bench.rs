@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 
+use operations::Group;
 use operations::price::{CASES, ROUNDS};
-use operations::{Group, Maker};
 use rayon::prelude::*;
 
 use super::reach::{Code, Reach};
@@ -24,6 +24,8 @@ pub struct Measurement {
     pub called_instructions: f64,
     /// The called function.
     pub reach: Reach,
+    /// The image.
+    pub elf: PathBuf,
 }
 
 /// Why there are no prices.
@@ -125,6 +127,7 @@ fn measure_group(qemu: &Path, group: Group, elf: &Path) -> Result<Vec<Measuremen
             instructions: line.instructions(line.inline),
             called_instructions: line.instructions(line.called),
             reach,
+            elf: elf.to_owned(),
         })
     })
     .collect()
@@ -174,17 +177,34 @@ impl Line {
         })
     }
 
-    /// Instructions of one operation in a loop that took so many ticks, to the hundredth.
+    /// Mean instructions of an operation in a loop that took so many ticks. Every round does the same, so the mean is a whole
+    /// number of instructions over the number of cases: what the clock's ticks blur is less than half of that.
     fn instructions(&self, ticks: u32) -> f64 {
-        let operations = f64::from(ROUNDS) * CASES as f64;
         let ticks = f64::from(ticks) - f64::from(self.baseline);
-        (ticks * INSTRUCTIONS_PER_TICK / operations * 100.0).round() / 100.0
+        (ticks * INSTRUCTIONS_PER_TICK / f64::from(ROUNDS)).round() / CASES as f64
     }
 }
 
-impl Measurement {
-    /// Whether a user would have to take it from elsewhere.
-    pub fn is_rival(&self) -> bool {
-        matches!(self.entry.maker, Maker::Rival(_))
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_of_the_console_is_a_price() {
+        let instructions = 3 * ROUNDS * CASES as u32;
+        // As many ticks as end within them, and one more, which the clock may have been short of.
+        let ticks = 0x10 + (f64::from(instructions) / INSTRUCTIONS_PER_TICK) as u32 + 1;
+        let text =
+            format!("row 00000002 0000000a 00000010 {ticks:08x} 00000010 00000001 00000002 00001a14\r");
+        let line = Line::parse(&text).expect("a line");
+        assert_eq!(
+            (line.cases, line.transcript, line.address),
+            (10, 1 << 32 | 2, 0x1a14)
+        );
+        assert_eq!(
+            (line.instructions(line.inline), line.instructions(line.called)),
+            (3.0, 0.0)
+        );
+        assert!(Line::parse("panic at somewhere").is_none() && Line::parse("row 00000002").is_none());
     }
 }

@@ -1,15 +1,27 @@
 //! The price list: what every arithmetic operation costs on a core, and how wrong it is.
 //!
-//! [`bench`] runs the images that take prices and transcripts, [`reach`] looks into them for sizes, and [`table`] makes
-//! it readable. The operations themselves are listed in the crate `operations`, which the images share.
+//! [`mod@bench`] runs the images that take prices and transcripts, and [`reach`] looks into them for sizes. [`verify`](mod@verify)
+//! compares with the [`truth`], and [`record`] keeps what it found over every input. [`table`] and [`plot`] make it all
+//! readable, beside quoted figures ([`anchors`]);
+//! [`readme`] puts that where users of the arithmetic look.
+//! The operations themselves are listed in the crate `operations`, which the images share.
 
+pub mod anchors;
 pub mod bench;
+pub mod plot;
 pub mod reach;
+pub mod readme;
+pub mod record;
 pub mod table;
+pub mod truth;
+pub mod verify;
 
 use std::path::Path;
 
 use bench::{BenchError, Measurement};
+use record::{Proof, Record, RecordError};
+use verify::{Depth, verify};
+
 use operations::{Format, Group, Maker, Operation, Variant, Visitor, transcript};
 use serde::Serialize;
 
@@ -34,6 +46,10 @@ pub struct Entry {
     pub table_bytes: u32,
     /// The hash of what it answers to so many inputs.
     pub transcript: fn(u32) -> u64,
+    /// The error in ulp for the input of these words, if that is in the domain.
+    pub error_at: fn(&[u32]) -> Option<f64>,
+    /// Whether its inputs are so few that each can be tried.
+    pub can_be_exhausted: bool,
 }
 
 /// The rows of a group, in the order in which its image prints them.
@@ -63,6 +79,8 @@ impl Visitor for List {
             domain: format!("{}{fitting}", V::DOMAIN),
             table_bytes: V::TABLE_BYTES,
             transcript: transcript::transcript::<V>,
+            error_at: verify::error_at::<V>,
+            can_be_exhausted: verify::can_be_exhausted::<V>(),
         });
     }
 }
@@ -90,19 +108,72 @@ pub struct Row {
     pub ulp: String,
     /// The inputs that errors are for.
     pub domain: String,
+    /// `exhaustive` where every input was tried, else `sampled`.
+    pub verified: &'static str,
     /// Bytes of tables it reads.
     pub table_bytes: u32,
     /// Bytes of the function and of all that it calls.
     pub code_bytes: u64,
+    /// The words of an input with the largest error.
+    pub worst_input: Vec<String>,
 }
 
-/// The whole list, from images built, run and compared with the host.
-pub fn prices(toolchain: &Toolchain, qemu: &Path) -> Result<Vec<Row>, BenchError> {
+/// Why there is no price list.
+#[derive(Debug, thiserror::Error)]
+pub enum PriceError {
+    /// There are no prices.
+    #[error(transparent)]
+    Bench(#[from] BenchError),
+    /// There is no record of errors.
+    #[error(transparent)]
+    Record(#[from] RecordError),
+    /// The record is about these sources, but not about what they do.
+    #[error(
+        "{operation}, {variant}: the input recorded as the worst does not have the recorded error; find out why, then \
+         write the record anew with `cargo xtask verify --exhaustive --bless`"
+    )]
+    Stale {
+        /// What is done.
+        operation: &'static str,
+        /// By which function.
+        variant: &'static str,
+    },
+}
+
+/// The whole list, from images built, run and compared with the host. Errors are the recorded ones while the record is about
+/// the sources as they are, and those of a sample for every other row.
+pub fn prices(toolchain: &Toolchain, qemu: &Path) -> Result<Vec<Row>, PriceError> {
     let measurements = bench::measure(toolchain, qemu)?;
-    Ok(measurements.iter().map(row).collect())
+    let record = Record::load(&Record::path())?;
+    let record = if record.is_current()? {
+        record
+    } else {
+        Record::default()
+    };
+    let sample = verify(Depth::Sampled, &|entry| record.find(entry).is_none(), &());
+    let sample = Record::of(&sample)?;
+    measurements
+        .iter()
+        .map(|measurement| {
+            let entry = &measurement.entry;
+            let recorded = record.find(entry);
+            if recorded.is_some_and(|proof| !proof.holds(entry)) {
+                return Err(PriceError::Stale {
+                    operation: entry.operation,
+                    variant: entry.variant,
+                });
+            }
+            let is_proof = recorded.is_some() && entry.can_be_exhausted;
+            Ok(row(
+                measurement,
+                recorded.or_else(|| sample.find(entry)),
+                is_proof,
+            ))
+        })
+        .collect()
 }
 
-fn row(measurement: &Measurement) -> Row {
+fn row(measurement: &Measurement, errors: Option<&Proof>, is_proof: bool) -> Row {
     let entry = &measurement.entry;
     Row {
         op: entry.operation,
@@ -111,12 +182,16 @@ fn row(measurement: &Measurement) -> Row {
         instructions: measurement.instructions,
         called_instructions: measurement.called_instructions,
         cycles: None,
-        max_error_ulp: None,
-        mean_error_ulp: None,
+        max_error_ulp: errors.map(|errors| errors.max_error_ulp),
+        mean_error_ulp: errors.map(|errors| errors.mean_error_ulp),
         ulp: format!("2^-{}", entry.format.fraction_bits),
         domain: entry.domain.clone(),
+        verified: if is_proof { "exhaustive" } else { "sampled" },
         table_bytes: entry.table_bytes,
         code_bytes: measurement.reach.bytes,
+        worst_input: errors
+            .map(|errors| errors.worst_input.clone())
+            .unwrap_or_default(),
     }
 }
 

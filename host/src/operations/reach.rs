@@ -81,6 +81,14 @@ impl Code {
     }
 }
 
+/// The tables of a crate in an image: symbols and bytes.
+pub fn tables(elf: &[u8], crate_name: &str) -> Result<BTreeMap<String, u64>, String> {
+    let file = object::File::parse(elf).map_err(|error| error.to_string())?;
+    let data = file.symbols().filter(|symbol| symbol.kind() == SymbolKind::Data);
+    let named = data.filter_map(|symbol| Some((symbol.name().ok()?.to_owned(), symbol.size())));
+    Ok(named.filter(|(name, _)| name.contains(crate_name)).collect())
+}
+
 /// Where a function's branches lead. A constant between the instructions may look like one, but hardly leads to where a
 /// function starts.
 fn targets(address: u64, words: &[u32]) -> impl Iterator<Item = u64> {

@@ -9,7 +9,7 @@ use super::Row;
 pub fn table(rows: &[Row]) -> String {
     let mut text = format!(
         "  {:42} {:10} {:>12} {:>9} {:>6} {:>6} {:>12} {:>11}  {}\n",
-        "", "", "instructions", "called", "code", "tables", "worst error", "mean error", "verified"
+        "", "", "instructions", "called", "code", "tables", "worst error", "mean error", "over"
     );
     for group in grouped(rows) {
         let _ = writeln!(text, "{}, ulp = {}", group[0].op, group[0].ulp);
@@ -26,11 +26,19 @@ pub fn table(rows: &[Row]) -> String {
                 row.table_bytes,
                 figure(row.max_error_ulp),
                 figure(row.mean_error_ulp),
-                row.domain,
+                coverage(row),
             );
         }
     }
     text
+}
+
+/// Which inputs the errors are for, and whether it was all of them.
+pub fn coverage(row: &Row) -> String {
+    match row.verified {
+        "exhaustive" => format!("all inputs: {}", row.domain),
+        sampled => format!("{sampled}: {}", row.domain),
+    }
 }
 
 /// The rows by operation, in the order in which operations first appear, the cheapest first.

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Context;
-use host::operations;
+use host::operations::{self, plot, readme};
 use host::setup::{self, Wanted};
 
 use crate::SetUp;
@@ -15,6 +15,12 @@ pub(crate) struct Arguments {
     /// Write the list as JSON, too
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
+    /// Draw the list, too, as .svg or .png; may be given more than once
+    #[arg(long, value_name = "FILE")]
+    plot: Vec<PathBuf>,
+    /// Put table and plots into fixedmath/, where its README shows them
+    #[arg(long)]
+    bless: bool,
     #[command(flatten)]
     set_up: SetUp,
 }
@@ -32,6 +38,12 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
     if let Some(path) = &arguments.json {
         let json = serde_json::to_string_pretty(&rows)?;
         std::fs::write(path, json + "\n").with_context(|| format!("cannot write {}", path.display()))?;
+    }
+    for path in &arguments.plot {
+        plot::write(path, &rows)?;
+    }
+    if arguments.bless {
+        readme::bless(&rows)?;
     }
     Ok(ExitCode::SUCCESS)
 }

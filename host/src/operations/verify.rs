@@ -1,0 +1,380 @@
+//! How wrong operations are: every variant against the truth, over a sample or over every input there is.
+//!
+//! The variants of an operation share inputs and, where they take the same ones, the truth about them, which is what
+//! takes the time. Work is cut into tasks of a fixed size whose results are put together in order: two runs give the same
+//! figures to the bit.
+
+use std::any::{Any, TypeId};
+use std::ops::Range;
+
+use fixedmath::random::Lcg64;
+use indicatif::{ProgressBar, ProgressStyle};
+use operations::{
+    Format, Function, Group, Input, Maker, Number, Operation, OperationInput, Variant, Visitor,
+};
+use rayon::prelude::*;
+
+use super::truth::{self, Oracle, RESULTS, Real};
+use super::{Entry, entries};
+
+/// How many inputs are tried.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Depth {
+    /// A million drawn ones, and a quarter of that of hard ones.
+    Sampled,
+    /// All 2^32 where 32 bits are all there are; elsewhere a thousand million drawn ones, and sixty million hard ones.
+    Exhaustive,
+}
+
+/// Cases in a task.
+const TASK: u32 = 1 << 16;
+/// The most words an input has, as real numbers.
+const ARGUMENTS: usize = 6;
+
+/// What was found about a row.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Figures {
+    /// Inputs within the domain.
+    pub cases: u64,
+    /// The largest error in ulp.
+    pub max_error: f64,
+    /// The mean error in ulp.
+    pub mean_error: f64,
+    /// The words of an input with the largest error.
+    pub worst_input: Vec<u32>,
+}
+
+impl Depth {
+    /// Rivals are slow, and not ours to prove: they are only ever sampled.
+    pub fn covers(self, entry: &Entry) -> bool {
+        self == Self::Sampled || !matches!(entry.maker, Maker::Rival(_))
+    }
+}
+
+/// A row and what was found about it; nothing, where there is no truth.
+#[derive(Clone, Debug)]
+pub struct Verdict {
+    /// The row.
+    pub entry: Entry,
+    /// What was found.
+    pub figures: Option<Figures>,
+}
+
+/// Judges the rows that `wanted` picks. `progress` is told how many tasks there are, and of each one that is done.
+pub fn verify(
+    depth: Depth,
+    wanted: &dyn Fn(&Entry) -> bool,
+    progress: &(dyn Progress + Sync),
+) -> Vec<Verdict> {
+    let rows: Vec<Entry> = Group::ALL.into_iter().flat_map(entries).collect();
+    let mut subjects = Subjects {
+        wanted: rows.iter().map(wanted).collect(),
+        next: 0,
+        list: Vec::new(),
+    };
+    for group in Group::ALL {
+        group.show(&mut subjects);
+    }
+    progress.tasks(subjects.list.iter().map(|subject| subject.tasks(depth)).sum());
+    let mut figures: Vec<Option<Figures>> = vec![None; rows.len()];
+    for subject in &subjects.list {
+        for (row, found) in subject.judge(depth, progress) {
+            figures[row] = found;
+        }
+    }
+    rows.into_iter()
+        .zip(figures)
+        .zip(subjects.wanted)
+        .filter_map(|((entry, figures), wanted)| wanted.then_some(Verdict { entry, figures }))
+        .collect()
+}
+
+/// Somebody who watches.
+pub trait Progress {
+    /// There are so many tasks.
+    fn tasks(&self, tasks: u64);
+    /// One is done.
+    fn done(&self);
+}
+
+/// Nobody watches.
+impl Progress for () {
+    fn tasks(&self, _tasks: u64) {}
+    fn done(&self) {}
+}
+
+/// A bar on the terminal, with a message in front.
+pub fn bar(message: &'static str) -> ProgressBar {
+    let style = ProgressStyle::with_template("{msg} {bar:40} {percent:>3} %, {eta} to go");
+    ProgressBar::new(0)
+        .with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+        .with_message(message)
+}
+
+impl Progress for ProgressBar {
+    fn tasks(&self, tasks: u64) {
+        self.set_length(tasks);
+    }
+
+    fn done(&self) {
+        self.inc(1);
+    }
+}
+
+/// The operations with their rows, as they are shown.
+struct Subjects {
+    wanted: Vec<bool>,
+    next: usize,
+    list: Vec<Box<dyn Subject>>,
+}
+
+impl Visitor for Subjects {
+    fn visit<V: Variant>(&mut self) {
+        let row = self.next;
+        self.next += 1;
+        if !self.wanted[row] {
+            return;
+        }
+        let judge = judge::<V> as Judge<V::Operation>;
+        let known = self.list.iter_mut().find_map(|subject| {
+            let subject: &mut dyn Any = subject.as_mut();
+            subject.downcast_mut::<Rows<V::Operation>>()
+        });
+        match known {
+            Some(rows) => rows.0.push((row, judge)),
+            None => self.list.push(Box::new(Rows::<V::Operation>(vec![(row, judge)]))),
+        }
+    }
+}
+
+type Judge<O> = fn(&Chunk<O>, &mut Tally<<O as Operation>::Input>);
+
+/// The rows of one operation: which of all they are, and how to judge them.
+struct Rows<O: Operation>(Vec<(usize, Judge<O>)>);
+
+trait Subject: Any {
+    fn tasks(&self, depth: Depth) -> u64;
+    fn judge(&self, depth: Depth, progress: &(dyn Progress + Sync)) -> Vec<(usize, Option<Figures>)>;
+}
+
+impl<O: Operation> Subject for Rows<O> {
+    fn tasks(&self, depth: Depth) -> u64 {
+        let plan = Plan::of::<O>(depth);
+        (plan.bits.len() + plan.drawn.len() + plan.hard.len()) as u64
+    }
+
+    fn judge(&self, depth: Depth, progress: &(dyn Progress + Sync)) -> Vec<(usize, Option<Figures>)> {
+        let Plan { bits, drawn, hard } = Plan::of::<O>(depth);
+        let sources = bits.map(Source::Bits).collect::<Vec<_>>().into_par_iter();
+        let sources = sources
+            .chain(drawn.into_par_iter().map(Source::Drawn))
+            .chain(hard.into_par_iter().map(Source::Hard));
+        let tallies: Vec<Vec<Tally<O::Input>>> = sources
+            .map(|source| {
+                let chunk = Chunk::<O>::of(source);
+                let mut tallies = vec![Tally::default(); self.0.len()];
+                for ((_, judge), tally) in self.0.iter().zip(&mut tallies) {
+                    judge(&chunk, tally);
+                }
+                progress.done();
+                tallies
+            })
+            .collect();
+        let row = |(place, &(row, _)): (usize, &(usize, Judge<O>))| {
+            let parts = tallies.iter().map(|tallies| &tallies[place]);
+            (row, Tally::figures(parts))
+        };
+        self.0.iter().enumerate().map(row).collect()
+    }
+}
+
+/// Tasks by where their inputs come from.
+struct Plan {
+    bits: Range<u32>,
+    drawn: Range<u32>,
+    hard: Range<u32>,
+}
+
+impl Plan {
+    fn of<O: Operation>(depth: Depth) -> Self {
+        let every = O::Input::of_bits(0).is_some();
+        let (bits, drawn, hard) = match depth {
+            Depth::Sampled => (0, 16, 4),
+            Depth::Exhaustive if every => (1 << 16, 0, 0),
+            Depth::Exhaustive => (0, 1_000_000_000 / TASK + 1, 1000),
+        };
+        Self {
+            bits: 0..bits,
+            drawn: 0..drawn,
+            hard: 0..hard,
+        }
+    }
+}
+
+#[derive(Clone, Copy)]
+enum Source {
+    Bits(u32),
+    Drawn(u32),
+    Hard(u32),
+}
+
+/// Inputs of an operation, and the truth about them.
+struct Chunk<O: Operation> {
+    inputs: Vec<O::Input>,
+    truths: Vec<[Real; RESULTS]>,
+}
+
+impl<O: Operation> Chunk<O> {
+    fn of(source: Source) -> Self {
+        let cases = 0..TASK;
+        let stream = |kind: u64, task: u32| Lcg64::new(kind << 32 | u64::from(task));
+        let inputs: Vec<Option<O::Input>> = match source {
+            Source::Bits(task) => cases.map(|case| O::Input::of_bits(task << 16 | case)).collect(),
+            Source::Drawn(task) => {
+                let mut random = stream(1, task);
+                cases.map(|_| Some(O::Input::draw(&mut random))).collect()
+            }
+            Source::Hard(task) => {
+                let mut random = stream(2, task);
+                cases.map(|_| Some(O::hard(&mut random))).collect()
+            }
+        };
+        let inputs: Vec<O::Input> = inputs
+            .into_iter()
+            .flatten()
+            .filter(|&input| O::accepts(input))
+            .collect();
+        let truths = truth::oracle(O::FUNCTION)
+            .map(|oracle| inputs.iter().map(|input| truth_about(oracle, input)).collect());
+        Self {
+            inputs,
+            truths: truths.unwrap_or_default(),
+        }
+    }
+}
+
+fn truth_about(oracle: Oracle, given: &impl Number) -> [Real; RESULTS] {
+    let mut arguments = [Real::default(); ARGUMENTS];
+    let mut places = arguments.iter_mut();
+    given.reals(&mut |high, low| {
+        if let Some(place) = places.next() {
+            *place = Real { high, low };
+        }
+    });
+    oracle(&arguments)
+}
+
+/// Sums up the errors of a row over a chunk.
+fn judge<V: Variant>(chunk: &Chunk<V::Operation>, tally: &mut Tally<OperationInput<V>>) {
+    let Some(oracle) = truth::oracle(V::FUNCTION) else {
+        return;
+    };
+    let shares = TypeId::of::<V::Given>() == TypeId::of::<OperationInput<V>>()
+        && V::FUNCTION == V::Operation::FUNCTION;
+    for (&input, &shared) in chunk.inputs.iter().zip(&chunk.truths) {
+        if V::accepts(input) {
+            let given = V::given(input);
+            let truth = if shares {
+                shared
+            } else {
+                truth_about(oracle, &given)
+            };
+            if let Some(error) = error::<V>(given, truth) {
+                tally.see(error, input);
+            }
+        }
+    }
+}
+
+/// The largest error in ulp of a variant's results; `None` where the truth is out of its domain.
+fn error<V: Variant>(given: V::Given, truth: [Real; RESULTS]) -> Option<f64> {
+    const fn format<V: Variant>() -> Format {
+        <V::Operation as Operation>::FORMAT
+    }
+    if !V::SATURATES && !truth.iter().all(|truth| truth.fits(format::<V>())) {
+        return None;
+    }
+    let mut truths = truth.iter();
+    let mut worst = 0f64;
+    V::apply(given).reals(&mut |high, low| {
+        if let Some(truth) = truths.next() {
+            let error = truth::error(V::FUNCTION, truth.clamped(format::<V>()), Real { high, low });
+            // What is no number is infinitely wrong.
+            worst = worst.max(if error.is_nan() { f64::INFINITY } else { error });
+        }
+    });
+    Some(worst * 2f64.powi(format::<V>().fraction_bits))
+}
+
+/// The error of a variant for the input of these words; `None` where that is out of its domain.
+pub(super) fn error_at<V: Variant>(words: &[u32]) -> Option<f64> {
+    let oracle = truth::oracle(V::FUNCTION)?;
+    let mut words = words.iter();
+    let any = OperationInput::<V>::draw(&mut Lcg64::new(0));
+    let input = any.through(&mut |_| words.next().copied().unwrap_or_default());
+    if !operations::accepts::<V>(input) {
+        return None;
+    }
+    let given = V::given(input);
+    error::<V>(given, truth_about(oracle, &given))
+}
+
+/// Whether every input of a variant can be tried.
+pub(super) fn can_be_exhausted<V: Variant>() -> bool {
+    OperationInput::<V>::of_bits(0).is_some() && V::FUNCTION != Function::RandomNumber
+}
+
+/// Errors, summed up.
+#[derive(Clone, Debug)]
+struct Tally<I> {
+    cases: u64,
+    max: f64,
+    sum: f64,
+    worst: Option<I>,
+}
+
+impl<I> Default for Tally<I> {
+    fn default() -> Self {
+        Self {
+            cases: 0,
+            max: 0.0,
+            sum: 0.0,
+            worst: None,
+        }
+    }
+}
+
+impl<I: Number> Tally<I> {
+    fn see(&mut self, error: f64, input: I) {
+        self.cases += 1;
+        self.sum += error;
+        if error > self.max || self.worst.is_none() {
+            self.max = error;
+            self.worst = Some(input);
+        }
+    }
+
+    /// The parts together; the worst input is the first of the worst.
+    fn figures<'a>(parts: impl Iterator<Item = &'a Self>) -> Option<Figures> {
+        let mut whole = Self::default();
+        for part in parts {
+            whole.cases += part.cases;
+            whole.sum += part.sum;
+            if part.max > whole.max || whole.worst.is_none() {
+                whole.max = part.max;
+                whole.worst = part.worst;
+            }
+        }
+        let mut worst_input = Vec::new();
+        whole.worst?.through(&mut |word| {
+            worst_input.push(word);
+            word
+        });
+        Some(Figures {
+            cases: whole.cases,
+            max_error: whole.max,
+            mean_error: whole.sum / whole.cases as f64,
+            worst_input,
+        })
+    }
+}

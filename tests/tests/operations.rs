@@ -1,0 +1,152 @@
+//! The price list: that it says the same twice, holds its ceilings, is ahead of what others have, and is what the README
+//! shows.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::PathBuf;
+use std::sync::OnceLock;
+
+use host::operations::anchors::ANCHORS;
+use host::operations::bench::{Measurement, measure};
+use host::operations::table::table;
+use host::operations::{Row, prices, reach, readme};
+use host::setup::{self, Install, Toolchain, Wanted};
+use operations::Maker;
+
+/// Bytes that our tables may take together.
+const TABLES: u64 = 2048;
+
+fn tools() -> (Toolchain, PathBuf) {
+    let wanted = Wanted {
+        qemu: true,
+        firmware: true,
+        ..Wanted::default()
+    };
+    let tools = setup::ensure(wanted, Install::Forbidden).unwrap();
+    (tools.firmware.unwrap(), tools.qemu.unwrap())
+}
+
+fn list() -> Vec<Row> {
+    let (toolchain, qemu) = tools();
+    // Fails where a transcript on the core is not the host's.
+    prices(&toolchain, &qemu).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn rows() -> &'static [Row] {
+    static ROWS: OnceLock<Vec<Row>> = OnceLock::new();
+    ROWS.get_or_init(list)
+}
+
+fn row(op: &str, variant: &str) -> &'static Row {
+    let found = rows()
+        .iter()
+        .find(|row| (row.op, row.variant) == (op, variant) && row.maker == "ours");
+    found.unwrap_or_else(|| panic!("there is no row for {op}, {variant}"))
+}
+
+#[test]
+fn two_runs_say_the_same() {
+    let again = list();
+    assert_eq!(rows(), again);
+    assert_eq!(table(rows()), table(&again));
+}
+
+/// `SMULL`, and two instructions that put the middle of its result together.
+#[test]
+fn a_product_cut_short_takes_three_instructions() {
+    assert_eq!(row("multiply", "product::wrapping_truncated").instructions, 3.0);
+}
+
+#[test]
+fn ours_cannot_panic_and_need_no_float_and_few_tables() {
+    let (toolchain, qemu) = tools();
+    let measured = measure(&toolchain, &qemu).unwrap_or_else(|error| panic!("{error}"));
+    let is_rival = |row: &&Measurement| matches!(row.entry.maker, Maker::Rival(_));
+    let (rivals, ours): (Vec<_>, Vec<_>) = measured.iter().partition(is_rival);
+    let panics = |row: &Measurement| row.reach.symbols.iter().any(|symbol| symbol.contains("panic"));
+    for row in &ours {
+        assert!(
+            !panics(row),
+            "{} reaches {:?}",
+            row.entry.variant,
+            row.reach.symbols
+        );
+    }
+    assert!(
+        rivals.iter().any(|row| panics(row)),
+        "a panic that is there is seen"
+    );
+    let mut tables = BTreeMap::new();
+    for row in &ours {
+        let elf = fs::read(&row.elf).unwrap();
+        assert!(host::firmware::measure(&elf).unwrap().float_symbols.is_empty());
+        tables.extend(reach::tables(&elf, "fixedmath").unwrap());
+    }
+    let bytes: u64 = tables.values().sum();
+    println!("{bytes} bytes of tables: {tables:?}");
+    assert!((1..=TABLES).contains(&bytes));
+}
+
+#[test]
+fn no_operation_costs_more_than_it_may() {
+    let ceilings = [
+        ("multiply", "product::nearest", 7.0),
+        ("divide", "division::nearest", 60.0),
+        ("square root", "root::of_length", 50.0),
+        ("square root 48:16", "root::of_wide", 90.0),
+        ("sine and cosine", "angle::quadratic_cos_sin", 40.0),
+        ("sine and cosine", "angle::linear_cos_sin", 12.0),
+        ("reciprocal square root", "root::reciprocal_of_length", 45.0),
+        ("normalise 16:16", "unit::of_vector", 120.0),
+    ];
+    for (op, variant, ceiling) in ceilings {
+        let row = row(op, variant);
+        assert!(
+            row.instructions <= ceiling,
+            "{op}, {variant}: {} of {ceiling}",
+            row.instructions
+        );
+    }
+    let error = |op, variant| row(op, variant).max_error_ulp.unwrap();
+    for (op, variant) in [
+        ("multiply", "product::nearest"),
+        ("divide", "division::nearest"),
+        ("square root", "root::of_length"),
+        ("square root 48:16", "root::of_wide"),
+    ] {
+        assert!(is_correctly_rounded(error(op, variant)), "{op}, {variant}");
+    }
+    assert!(error("sine and cosine", "angle::quadratic_cos_sin") <= 1.0);
+}
+
+/// Half an ulp, but for what a double's rounding adds.
+fn is_correctly_rounded(error: f64) -> bool {
+    error <= 0.5 + 1e-9
+}
+
+#[test]
+fn ours_are_faster_and_closer_than_libraries_in_c() {
+    for anchor in ANCHORS {
+        let mut ours = rows()
+            .iter()
+            .filter(|row| row.op == anchor.op && row.maker == "ours");
+        let is_ahead = |row: &Row| {
+            let error = row.max_error_ulp.unwrap();
+            let closer = anchor
+                .max_error_ulp
+                .is_none_or(|others| error < others || is_correctly_rounded(error));
+            // Without conditions on the result, as the library is.
+            row.instructions < anchor.instructions && closer && !row.domain.contains("fit")
+        };
+        assert!(ours.any(is_ahead), "{anchor:?}");
+    }
+}
+
+#[test]
+fn the_readme_shows_what_the_bench_prints() {
+    let printed = readme::printed().unwrap_or_else(|error| panic!("{error}"));
+    assert!(
+        printed == readme::markdown(rows()),
+        "the list has changed: look at it, and write it anew with `cargo xtask bench ops --bless`"
+    );
+}

@@ -1,0 +1,95 @@
+//! `cargo xtask verify`
+
+use std::process::ExitCode;
+
+use anyhow::ensure;
+use host::operations::Entry;
+use host::operations::record::{Record, sources_sha256};
+use host::operations::table::figure;
+use host::operations::verify::{Depth, Verdict, bar, verify};
+
+/// Arguments of `verify`.
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// Try all 2^32 inputs of the operations that have no more, and a thousand million of the others: some minutes
+    #[arg(long)]
+    exhaustive: bool,
+    /// Write what the exhaustive run finds to fixedmath/proof.json, instead of comparing
+    #[arg(long, requires = "exhaustive")]
+    bless: bool,
+    /// Only the operation of this name
+    #[arg(long, value_name = "NAME")]
+    op: Option<String>,
+}
+
+/// Compares a sample of every operation, as `cargo xtask test` does.
+pub(crate) fn sampled() -> anyhow::Result<ExitCode> {
+    run(&Arguments {
+        exhaustive: false,
+        bless: false,
+        op: None,
+    })
+}
+
+pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
+    let depth = if arguments.exhaustive {
+        Depth::Exhaustive
+    } else {
+        Depth::Sampled
+    };
+    let op = arguments.op.as_deref();
+    let wanted = |entry: &Entry| depth.covers(entry) && op.is_none_or(|op| op == entry.operation);
+    let sources = sources_sha256()?;
+    let bar = bar("comparing with the truth");
+    let verdicts = verify(depth, &wanted, &bar);
+    bar.finish_and_clear();
+    ensure!(
+        !verdicts.is_empty(),
+        "there is no operation `{}`; `cargo xtask bench ops` names them all",
+        op.unwrap_or_default()
+    );
+    println!("{}", table(&verdicts));
+    let record = Record::load(&Record::path())?;
+    if arguments.bless {
+        ensure!(
+            sources == sources_sha256()?,
+            "fixedmath's sources have changed meanwhile, and this is about what they were; try again"
+        );
+        record.updated(&verdicts)?.store(&Record::path())?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    let faults = match depth {
+        Depth::Sampled => record.exceeded(&verdicts),
+        Depth::Exhaustive => record.differences(&verdicts),
+    };
+    ensure!(
+        faults.is_empty(),
+        "not what the record says:\n{}",
+        faults.join("\n")
+    );
+    if !record.is_current()? {
+        println!(
+            "the record is about other sources: `cargo xtask verify --exhaustive --bless` brings it up to date"
+        );
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn table(verdicts: &[Verdict]) -> String {
+    let lines = verdicts.iter().filter_map(|Verdict { entry, figures }| {
+        let figures = figures.as_ref()?;
+        Some(format!(
+            "{:28} {:42} {:>12} {:>12} {:>14}",
+            entry.operation,
+            entry.variant,
+            figure(Some(figures.max_error)),
+            figure(Some(figures.mean_error)),
+            figures.cases
+        ))
+    });
+    let head = format!(
+        "{:28} {:42} {:>12} {:>12} {:>14}",
+        "", "", "worst error", "mean error", "cases"
+    );
+    std::iter::once(head).chain(lines).collect::<Vec<_>>().join("\n")
+}
