@@ -65,7 +65,7 @@ fn the_angle_of_a_vector_is_its_arc_tangent() {
         let apart = (f64::from(turn as i32) / 4_294_967_296.0 * TAU - exact).abs();
         found = found.max(apart.min(TAU - apart) * 65_536.0);
     }
-    assert!((0.105..=0.12).contains(&found), "{found} ulp of 2^-16 radians");
+    assert!((0.0024..=0.003).contains(&found), "{found} ulp of 2^-16 radians");
 }
 
 #[test]

@@ -119,10 +119,12 @@ pub(crate) fn angles(visitor: &mut impl Visitor) {
         Published "angle::parabolic_sine" |Turn(turn)| angle::parabolic_sine(turn);
         Published "angle::refined_parabolic_sine" |Turn(turn)| angle::refined_parabolic_sine(turn);
         Ours "angle::sine" |Turn(turn)| angle::sine(turn), { const TABLE_BYTES: u32 = NODES; };
+        Ours "angle::cos_sin, its sine" |Turn(turn)| angle::cos_sin(turn).1, I2F30;
     );
     rows!(visitor, Cosine:
         Published "angle::parabolic_sine" |Turn(turn)| angle::parabolic_sine(turn.wrapping_add(1 << 30));
         Ours "angle::cosine" |Turn(turn)| angle::cosine(turn), { const TABLE_BYTES: u32 = NODES; };
+        Ours "angle::cos_sin, its cosine" |Turn(turn)| angle::cos_sin(turn).0, I2F30;
     );
     rows!(visitor, CosineAndSine:
         Published "angle::parabolic_sine, twice" |Turn(turn)| Published::cos_sin(turn), (I16F16, I16F16);
