@@ -16,6 +16,18 @@
 //! | [`random`] | linear congruential generators with jump-ahead |
 //!
 //! A bound in *ulp* counts units in the last place of the result's own format.
+//!
+//! Plain names saturate where a result does not fit; `wrapping_` names are for results that are known to fit, `checked_`
+//! names give `None` for those that do not and for arguments without a result.
+//!
+//! # Prices
+//!
+//! A cost is in instructions on an emulated ARM9E-S (ARMv5TE), compiled in line, loop overhead subtracted. Every variant
+//! here, the published ones among them, and what other crates and soft float offer, cost against worst error:
+//!
+//! <div style="overflow-x: auto">
+#![doc = include_str!("../prices.svg")]
+//! </div>
 #![no_std]
 #![deny(unsafe_code)]
 
@@ -31,3 +43,8 @@ pub mod unit;
 pub mod warp;
 
 pub use fixed::types::{I2F30, I16F16, I32F32, I48F16};
+
+/// The README's examples.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+enum ReadMe {}
