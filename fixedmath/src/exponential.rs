@@ -15,6 +15,8 @@ static POWERS: [u32; 32] = powers();
 
 /// `e^x`: within 1.2 ulp. Saturates above ln 32768 = 10.397; below ln 2^-17 = -11.784 it is 0.
 ///
+/// Cost: 34 instructions.
+///
 /// ```
 /// use fixedmath::{exponential, I16F16};
 /// assert_eq!(exponential::natural(I16F16::ZERO), I16F16::ONE);

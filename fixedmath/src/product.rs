@@ -54,12 +54,16 @@ const fn units(bits: Option<i32>) -> Option<I2F30> {
 }
 
 /// `a b` rounded down, the published multiply: within 1 ulp below. Saturates.
+///
+/// Cost: 7 instructions.
 #[inline]
 pub const fn truncated(a: I16F16, b: I16F16) -> I16F16 {
     I16F16::from_bits(floored::<16>(wide(a.to_bits(), b.to_bits())))
 }
 
 /// [`truncated`] modulo 2^32 ulp, for products known to fit.
+///
+/// Cost: 3 instructions.
 #[inline]
 pub const fn wrapping_truncated(a: I16F16, b: I16F16) -> I16F16 {
     I16F16::from_bits((wide(a.to_bits(), b.to_bits()) >> 16) as i32)
@@ -71,6 +75,8 @@ pub const fn checked_truncated(a: I16F16, b: I16F16) -> Option<I16F16> {
 }
 
 /// `a b` to the nearest, halves up: within 0.5 ulp. Saturates.
+///
+/// Cost: 6 instructions.
 ///
 /// ```
 /// use fixedmath::{product, I16F16};
@@ -84,6 +90,8 @@ pub fn nearest(a: I16F16, b: I16F16) -> I16F16 {
 }
 
 /// [`nearest`] modulo 2^32 ulp, for products known to fit.
+///
+/// Cost: 3 instructions.
 #[inline]
 pub fn wrapping_nearest(a: I16F16, b: I16F16) -> I16F16 {
     I16F16::from_bits(assembly::rounded::<16>(wide(a.to_bits(), b.to_bits())))
@@ -103,6 +111,8 @@ pub const fn checked_nearest(a: I16F16, b: I16F16) -> Option<I16F16> {
 
 /// A length times a direction's component, to the nearest, halves up: within 0.5 ulp. Saturates, which only a
 /// component outside [-1, 1] can bring about.
+///
+/// Cost: 6 instructions.
 #[inline]
 pub fn scaled(length: I16F16, component: I2F30) -> I16F16 {
     I16F16::from_bits(assembly::saturated::<30>(wide(
@@ -112,12 +122,16 @@ pub fn scaled(length: I16F16, component: I2F30) -> I16F16 {
 }
 
 /// A length times a direction's component, rounded down: within 1 ulp below. Saturates.
+///
+/// Cost: 7 instructions.
 #[inline]
 pub const fn truncated_scaled(length: I16F16, component: I2F30) -> I16F16 {
     I16F16::from_bits(floored::<30>(wide(length.to_bits(), component.to_bits())))
 }
 
 /// [`scaled`] modulo 2^32 ulp: the same for every component in [-1, 1], but for `MIN` times -1.
+///
+/// Cost: 3 instructions.
 #[inline]
 pub fn wrapping_scaled(length: I16F16, component: I2F30) -> I16F16 {
     I16F16::from_bits(assembly::rounded::<30>(wide(
@@ -135,12 +149,16 @@ pub const fn checked_scaled(length: I16F16, component: I2F30) -> Option<I16F16> 
 
 /// A product of two direction components, to the nearest, halves up: within 0.5 ulp of 2^-30. Saturates, which only
 /// components outside [-1, 1] can bring about.
+///
+/// Cost: 6 instructions.
 #[inline]
 pub fn of_units(a: I2F30, b: I2F30) -> I2F30 {
     I2F30::from_bits(assembly::saturated::<30>(wide(a.to_bits(), b.to_bits())))
 }
 
 /// A product of two direction components rounded down, modulo 4: within 1 ulp of 2^-30 below, for components in [-1, 1].
+///
+/// Cost: 3 instructions.
 #[inline]
 pub const fn wrapping_of_units(a: I2F30, b: I2F30) -> I2F30 {
     I2F30::from_bits((wide(a.to_bits(), b.to_bits()) >> 30) as i32)
@@ -152,6 +170,8 @@ pub const fn checked_of_units(a: I2F30, b: I2F30) -> Option<I2F30> {
 }
 
 /// `sum + a b` in 32:32: exact, or saturated where it leaves the format.
+///
+/// Cost: 8 instructions.
 ///
 /// ```
 /// use fixedmath::{product, I16F16, I32F32};
@@ -165,6 +185,8 @@ pub const fn accumulate(sum: I32F32, a: I16F16, b: I16F16) -> I32F32 {
 }
 
 /// `sum + a b` modulo 2^64 ulp of 32:32, for sums known to fit: one `SMLAL`.
+///
+/// Cost: 1 instruction.
 #[inline]
 pub const fn wrapping_accumulate(sum: I32F32, a: I16F16, b: I16F16) -> I32F32 {
     I32F32::from_bits(sum.to_bits().wrapping_add(wide(a.to_bits(), b.to_bits())))
@@ -179,12 +201,16 @@ pub const fn checked_accumulate(sum: I32F32, a: I16F16, b: I16F16) -> Option<I32
 }
 
 /// A sum of products as a length, to the nearest, halves up: within 0.5 ulp. Saturates.
+///
+/// Cost: 5 instructions.
 #[inline]
 pub fn rounded(sum: I32F32) -> I16F16 {
     I16F16::from_bits(assembly::saturated::<16>(sum.to_bits()))
 }
 
 /// The dot product of two 16:16 vectors in 32:32: exact, or saturated, sum by sum, where one leaves the format.
+///
+/// Cost: 17 instructions.
 ///
 /// ```
 /// use fixedmath::{product, I16F16, I32F32};
@@ -202,6 +228,8 @@ pub const fn dot(a: [I16F16; 3], b: [I16F16; 3]) -> I32F32 {
 /// The dot product of two 16:16 vectors modulo 2^64 ulp of 32:32, for sums whose last step is known to fit.
 ///
 /// Exact while the components stay below 26,754 in magnitude.
+///
+/// Cost: 3 instructions.
 #[inline]
 pub const fn wrapping_dot(a: [I16F16; 3], b: [I16F16; 3]) -> I32F32 {
     let first = I32F32::from_bits(wide(a[0].to_bits(), b[0].to_bits()));
@@ -219,6 +247,8 @@ pub const fn checked_dot(a: [I16F16; 3], b: [I16F16; 3]) -> Option<I32F32> {
 
 /// The dot product of two 16:16 vectors as a length: one rounding to the nearest, within 0.5 ulp. Saturates; beyond
 /// components of 26,754 the sum of three products may wrap first.
+///
+/// Cost: 8 instructions.
 #[inline]
 pub fn rounded_dot(a: [I16F16; 3], b: [I16F16; 3]) -> I16F16 {
     rounded(wrapping_dot(a, b))
@@ -237,6 +267,8 @@ pub const fn checked_rounded_dot(a: [I16F16; 3], b: [I16F16; 3]) -> Option<I16F1
 
 /// How far a 16:16 vector goes along a direction: their dot product, rounded once to the nearest, within 0.5 ulp.
 /// Saturates; components of `direction` lie in [-1, 1].
+///
+/// Cost: 8 instructions.
 ///
 /// ```
 /// use fixedmath::{product, I16F16, I2F30};
@@ -269,6 +301,8 @@ pub const fn checked_projection(v: [I16F16; 3], direction: [I2F30; 3]) -> Option
 
 /// The cosine between two directions: their dot product, rounded once to the nearest, within 0.5 ulp of 2^-30, for
 /// components in [-1, 1] and results below 2 in magnitude, modulo 4 otherwise.
+///
+/// Cost: 5 instructions.
 #[inline]
 pub fn cosine(a: [I2F30; 3], b: [I2F30; 3]) -> I2F30 {
     let sum = wide(a[0].to_bits(), b[0].to_bits())

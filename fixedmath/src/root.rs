@@ -19,6 +19,8 @@ pub(crate) use kernel::{normalised, reciprocal};
 
 /// Square root of 16:16 by restoring steps, rounded down: within 1 ulp below. A negative argument gives 0.
 ///
+/// Cost: 320 instructions.
+///
 /// ```
 /// use fixedmath::{root, I16F16};
 /// assert_eq!(root::restoring(I16F16::from_num(2)), I16F16::from_bits(92681));
@@ -54,6 +56,8 @@ pub const fn checked_restoring(x: I16F16) -> Option<I16F16> {
 /// smallest that brings the argument into 16:16: one ulp of the small root, and what the shift cut off the argument.
 ///
 /// A negative argument gives 0; a root past 32,767 saturates.
+///
+/// Cost: 354 instructions.
 pub const fn split(x: I48F16) -> I16F16 {
     if x.to_bits() < 0 {
         return I16F16::ZERO;
@@ -87,6 +91,8 @@ const UNFIT: i64 = (1 << 62) - (1 << 31) + 1;
 /// Square root of a 32:32 square in 16:16, to the nearest: within 0.5 ulp. A negative argument gives 0; a root past
 /// 32,767 saturates.
 ///
+/// Cost: 47 instructions.
+///
 /// ```
 /// use fixedmath::{root, I16F16, I32F32};
 /// assert_eq!(root::of_square(I32F32::from_num(100_000_000)), I16F16::from_num(10_000));
@@ -115,6 +121,8 @@ pub const fn checked_of_square(x: I32F32) -> Option<I16F16> {
 /// Square root of 48:16 in 16:16, to the nearest: within 0.5 ulp. A negative argument gives 0; a root past 32,767
 /// saturates.
 ///
+/// Cost: 45 instructions.
+///
 /// ```
 /// use fixedmath::{root, I16F16, I48F16};
 /// assert_eq!(root::of_wide(I48F16::from_num(1_000_000)), I16F16::from_num(1000));
@@ -141,6 +149,8 @@ pub const fn checked_of_wide(x: I48F16) -> Option<I16F16> {
 }
 
 /// Square root of 16:16, to the nearest: within 0.5 ulp. A negative argument gives 0.
+///
+/// Cost: 29 instructions.
 ///
 /// ```
 /// use fixedmath::{root, I16F16};
@@ -169,6 +179,8 @@ pub const fn checked_of_length(x: I16F16) -> Option<I16F16> {
 /// `1 / sqrt(x)` of 16:16, to the nearest but for ties too close to tell: within 0.51 ulp. An argument of 0 or less gives
 /// `MAX`.
 ///
+/// Cost: 26 instructions.
+///
 /// ```
 /// use fixedmath::{root, I16F16};
 /// assert_eq!(root::reciprocal_of_length(I16F16::from_num(4)), I16F16::from_num(0.5));
@@ -195,6 +207,8 @@ pub const fn checked_reciprocal_of_length(x: I16F16) -> Option<I16F16> {
 }
 
 /// Square root of 2:30, to the nearest: within 0.5 ulp of 2^-30. A negative argument gives 0.
+///
+/// Cost: 51 instructions.
 #[inline]
 pub const fn of_fraction(x: I2F30) -> I2F30 {
     if x.to_bits() <= 0 {
@@ -227,6 +241,8 @@ pub(crate) const fn of_wide_share(share: u64) -> u32 {
 }
 
 /// The integer nearest to the square root of `v`; `u32::MAX` where that is 2^32.
+///
+/// Cost: 51 instructions.
 #[inline]
 pub const fn nearest(v: u64) -> u32 {
     if v == 0 {
@@ -244,6 +260,8 @@ pub const fn nearest(v: u64) -> u32 {
 }
 
 /// The square root of `v`, rounded down.
+///
+/// Cost: 44 instructions.
 #[inline]
 pub const fn floor(v: u64) -> u32 {
     if v == 0 {

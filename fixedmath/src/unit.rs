@@ -21,6 +21,8 @@ const fn unit_bits(v: [I2F30; 3]) -> [i32; 3] {
 
 /// The length of a 16:16 vector, to the nearest: within 0.5 ulp. Saturates.
 ///
+/// Cost: 62 instructions.
+///
 /// ```
 /// use fixedmath::{unit, I16F16};
 /// let v = [3, -4, 12].map(I16F16::from_num);
@@ -50,6 +52,8 @@ pub const fn checked_length(v: [I16F16; 3]) -> Option<I16F16> {
 /// The direction of a 16:16 vector: each component within 4 ulp of 2^-30, the length within 2^-28 of 1, for every vector
 /// but zero, which gives zero.
 ///
+/// Cost: 51 instructions.
+///
 /// ```
 /// use fixedmath::{unit, I2F30, I16F16};
 /// let ulp = I16F16::from_bits(1);
@@ -73,6 +77,8 @@ pub fn checked_of_vector(v: [I16F16; 3]) -> Option<[I2F30; 3]> {
 /// `v` brought to unit length: each component within 4 ulp of 2^-30. Zero gives zero.
 ///
 /// Components may have any magnitude the format holds; the longest vector has length sqrt(12).
+///
+/// Cost: 51 instructions.
 ///
 /// ```
 /// use fixedmath::{unit, I2F30};
@@ -134,6 +140,8 @@ fn stretched(component: i32, inverse: i32) -> I2F30 {
 ///
 /// For directions that rounding has moved off the sphere. The step shortens what is longer than sqrt(3) to nothing: such
 /// a vector gives 0.
+///
+/// Cost: 18 instructions.
 #[inline]
 pub fn renormalised(v: [I2F30; 3]) -> [I2F30; 3] {
     let square = square(unit_bits(v));

@@ -9,6 +9,8 @@ use crate::{angle, product, root, unit};
 /// The tent filter's distribution on (-1, 1), by inversion: `1 - sqrt(f)` with the sign of the top bit, where `f` is the
 /// rest of the fraction. Within 4 ulp of 2^-30.
 ///
+/// Cost: 27 instructions.
+///
 /// ```
 /// use fixedmath::{warp, I2F30};
 /// assert!(warp::tent(0) < -I2F30::ONE + I2F30::from_num(1e-4));
@@ -22,6 +24,8 @@ pub const fn tent(fraction: u32) -> I2F30 {
 
 /// A point of the unit sphere, uniform by area: its height uniform in [-1, 1], as Archimedes found, and its angle a turn.
 /// Each component within 8 ulp of 2^-30.
+///
+/// Cost: 73 instructions.
 ///
 /// ```
 /// use fixedmath::{warp, I2F30};
@@ -47,6 +51,8 @@ pub const fn sphere(height: u32, turn: u32) -> [I2F30; 3] {
 /// the unit [`sphere`], brought to unit length. It needs no basis, and there is no axis where it breaks down.
 ///
 /// Where the sum vanishes the normal itself is the result.
+///
+/// Cost: 133 instructions.
 ///
 /// ```
 /// use fixedmath::{product, warp, I2F30};

@@ -150,3 +150,43 @@ fn the_readme_shows_what_the_bench_prints() {
         "the list has changed: look at it, and write it anew with `cargo xtask bench ops --bless`"
     );
 }
+
+/// The cost that a function's documentation gives, if there is such a function in `fixedmath`.
+fn documented_cost(variant: &str) -> Option<u32> {
+    let (module, function) = (variant.split("::").next()?, variant.split("::").last()?);
+    let path = host::firmware::workspace().join(format!("fixedmath/src/{module}.rs"));
+    let source = fs::read_to_string(path).ok()?;
+    let lines: Vec<&str> = source.lines().map(str::trim).collect();
+    let head = [format!("pub fn {function}("), format!("pub const fn {function}(")];
+    let place = lines
+        .iter()
+        .position(|line| head.iter().any(|head| line.starts_with(head.as_str())))?;
+    let documentation = lines[..place]
+        .iter()
+        .rev()
+        .take_while(|line| line.starts_with("///") || line.starts_with("#["));
+    let cost = documentation
+        .filter_map(|line| line.strip_prefix("/// Cost: "))
+        .next();
+    let cost = cost.unwrap_or_else(|| panic!("the documentation of {variant} gives no cost"));
+    Some(cost.split(' ').next()?.parse().unwrap())
+}
+
+#[test]
+fn documentation_gives_the_prices_that_are_measured() {
+    let ours = rows()
+        .iter()
+        .filter(|row| ["ours", "published"].contains(&row.maker) && !row.variant.contains(' '));
+    let mut checked = 0;
+    let mut seen = std::collections::BTreeSet::new();
+    // A function that serves several operations is documented for the first.
+    for row in ours.filter(|row| seen.insert(row.variant)) {
+        let Some(documented) = documented_cost(row.variant) else {
+            continue;
+        };
+        checked += 1;
+        let measured = row.instructions.round();
+        assert_eq!(f64::from(documented), measured, "{}", row.variant);
+    }
+    assert!(checked > 40, "only {checked} functions were found");
+}
