@@ -9,7 +9,7 @@ use std::sync::OnceLock;
 use host::operations::anchors::ANCHORS;
 use host::operations::bench::{Measurement, measure};
 use host::operations::table::table;
-use host::operations::{Row, prices, reach, readme};
+use host::operations::{Row, reach, readme, with_errors};
 use host::setup::{self, Install, Toolchain, Wanted};
 use operations::Maker;
 
@@ -26,15 +26,24 @@ fn tools() -> (Toolchain, PathBuf) {
     (tools.firmware.unwrap(), tools.qemu.unwrap())
 }
 
-fn list() -> Vec<Row> {
+/// Fails where a transcript on the core is not the host's.
+fn take() -> Vec<Measurement> {
     let (toolchain, qemu) = tools();
-    // Fails where a transcript on the core is not the host's.
-    prices(&toolchain, &qemu).unwrap_or_else(|error| panic!("{error}"))
+    measure(&toolchain, &qemu).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn list(measurements: &[Measurement]) -> Vec<Row> {
+    with_errors(measurements).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn measurements() -> &'static [Measurement] {
+    static MEASUREMENTS: OnceLock<Vec<Measurement>> = OnceLock::new();
+    MEASUREMENTS.get_or_init(take)
 }
 
 fn rows() -> &'static [Row] {
     static ROWS: OnceLock<Vec<Row>> = OnceLock::new();
-    ROWS.get_or_init(list)
+    ROWS.get_or_init(|| list(measurements()))
 }
 
 fn row(op: &str, variant: &str) -> &'static Row {
@@ -46,12 +55,12 @@ fn row(op: &str, variant: &str) -> &'static Row {
 
 #[test]
 fn two_runs_say_the_same() {
-    let again = list();
+    let again = list(&take());
     assert_eq!(rows(), again);
     assert_eq!(table(rows()), table(&again));
 }
 
-/// `SMULL`, and two instructions that put the middle of its result together.
+/// An operation that needs no choice of any compiler: `SMULL`, and two instructions that put the middle of its result together.
 #[test]
 fn a_product_cut_short_takes_three_instructions() {
     assert_eq!(row("multiply", "product::wrapping_truncated").instructions, 3.0);
@@ -59,10 +68,8 @@ fn a_product_cut_short_takes_three_instructions() {
 
 #[test]
 fn ours_cannot_panic_and_need_no_float_and_few_tables() {
-    let (toolchain, qemu) = tools();
-    let measured = measure(&toolchain, &qemu).unwrap_or_else(|error| panic!("{error}"));
     let is_rival = |row: &&Measurement| matches!(row.entry.maker, Maker::Rival(_));
-    let (rivals, ours): (Vec<_>, Vec<_>) = measured.iter().partition(is_rival);
+    let (rivals, ours): (Vec<_>, Vec<_>) = measurements().iter().partition(is_rival);
     let panics = |row: &Measurement| row.reach.symbols.iter().any(|symbol| symbol.contains("panic"));
     for row in &ours {
         assert!(
@@ -142,13 +149,39 @@ fn ours_are_faster_and_closer_than_libraries_in_c() {
     }
 }
 
+/// Whether the costs that are written down are of the compiler at hand. Another one schedules and spills otherwise.
+fn is_the_readme_s_compiler(printed: &str) -> bool {
+    readme::compiler(printed) == Some(rows()[0].compiler.as_str())
+}
+
+/// What a table says but for costs, and for what depends on them: the order of rows, and which are printed bold.
+fn without_costs(table: &str) -> Vec<String> {
+    let mut operation = String::new();
+    let mut lines: Vec<String> = Vec::new();
+    for line in table
+        .lines()
+        .filter(|line| line.starts_with("| ") || line.starts_with("|  |"))
+    {
+        let cells: Vec<&str> = line.split('|').map(str::trim).collect();
+        if !cells[1].is_empty() {
+            operation = cells[1].to_owned();
+        }
+        let kept = [&[operation.as_str()], &cells[2..4], &cells[6..]].concat();
+        lines.push(kept.join(" ").replace('*', ""));
+    }
+    lines.sort_unstable();
+    lines
+}
+
 #[test]
 fn the_readme_shows_what_the_bench_prints() {
     let printed = readme::printed().unwrap_or_else(|error| panic!("{error}"));
-    assert!(
-        printed == readme::markdown(rows()),
-        "the list has changed: look at it, and write it anew with `cargo xtask bench ops --bless`"
-    );
+    let measured = readme::markdown(rows());
+    let advice = "the list has changed: look at it, and write it anew with `cargo xtask bench ops --bless`";
+    assert_eq!(without_costs(&printed), without_costs(&measured), "{advice}");
+    if is_the_readme_s_compiler(&printed) {
+        assert!(printed == measured, "{advice}");
+    }
 }
 
 /// The cost that a function's documentation gives, if there is such a function in `fixedmath`.
@@ -177,6 +210,12 @@ fn documentation_gives_the_prices_that_are_measured() {
     let ours = rows()
         .iter()
         .filter(|row| ["ours", "published"].contains(&row.maker) && !row.variant.contains(' '));
+    let printed = readme::printed().unwrap_or_else(|error| panic!("{error}"));
+    // With another compiler, a quarter more or less, or three instructions.
+    let tolerance = |measured: f64| match is_the_readme_s_compiler(&printed) {
+        true => 0.0,
+        false => (measured / 4.0).max(3.0),
+    };
     let mut checked = 0;
     let mut seen = std::collections::BTreeSet::new();
     // A function that serves several operations is documented for the first.
@@ -186,7 +225,12 @@ fn documentation_gives_the_prices_that_are_measured() {
         };
         checked += 1;
         let measured = row.instructions.round();
-        assert_eq!(f64::from(documented), measured, "{}", row.variant);
+        let off = (f64::from(documented) - measured).abs();
+        assert!(
+            off <= tolerance(measured),
+            "{}: {documented}, not {measured}",
+            row.variant
+        );
     }
     assert!(checked > 40, "only {checked} functions were found");
 }

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 
+use object::{Object, ObjectSection};
 use operations::Group;
 use operations::price::{CASES, ROUNDS};
 use rayon::prelude::*;
@@ -26,6 +27,8 @@ pub struct Measurement {
     pub reach: Reach,
     /// The image.
     pub elf: PathBuf,
+    /// The version of the compiler that made it.
+    pub compiler: String,
 }
 
 /// Why there are no prices.
@@ -118,6 +121,8 @@ fn measure_group(qemu: &Path, group: Group, elf: &Path) -> Result<Vec<Measuremen
     };
     let bytes = fs::read(elf).map_err(|cause| damaged(cause.to_string()))?;
     let code = Code::of(&bytes).map_err(damaged)?;
+    let compiler =
+        compiler_of(&bytes).ok_or_else(|| damaged("it does not say which rustc made it".to_owned()))?;
     let rows = entries.into_par_iter().zip(lines);
     rows.map(|(entry, line)| {
         compare(&entry, &line)?;
@@ -128,9 +133,21 @@ fn measure_group(qemu: &Path, group: Group, elf: &Path) -> Result<Vec<Measuremen
             called_instructions: line.instructions(line.called),
             reach,
             elf: elf.to_owned(),
+            compiler: compiler.clone(),
         })
     })
     .collect()
+}
+
+/// From the comments that compilers and linkers leave: `rustc version 1.96.0 (ac68faa20 2026-05-25)`.
+fn compiler_of(elf: &[u8]) -> Option<String> {
+    let file = object::File::parse(elf).ok()?;
+    let comments = file.section_by_name(".comment")?.data().ok()?;
+    let rustc = comments
+        .split(|&byte| byte == 0)
+        .filter_map(|comment| str::from_utf8(comment).ok()?.strip_prefix("rustc version "))
+        .next()?;
+    rustc.split(' ').next().map(str::to_owned)
 }
 
 fn compare(entry: &Entry, line: &Line) -> Result<(), BenchError> {

@@ -116,6 +116,8 @@ pub struct Row {
     pub code_bytes: u64,
     /// The words of an input with the largest error.
     pub worst_input: Vec<String>,
+    /// The version of the compiler that the costs are of.
+    pub compiler: String,
 }
 
 /// Why there is no price list.
@@ -143,7 +145,11 @@ pub enum PriceError {
 /// The whole list, from images built, run and compared with the host. Errors are the recorded ones while the record is about
 /// the sources as they are, and those of a sample for every other row.
 pub fn prices(toolchain: &Toolchain, qemu: &Path) -> Result<Vec<Row>, PriceError> {
-    let measurements = bench::measure(toolchain, qemu)?;
+    with_errors(&bench::measure(toolchain, qemu)?)
+}
+
+/// The list from prices that have been taken.
+pub fn with_errors(measurements: &[Measurement]) -> Result<Vec<Row>, PriceError> {
     let record = Record::load(&Record::path())?;
     let record = if record.is_current()? {
         record
@@ -192,6 +198,7 @@ fn row(measurement: &Measurement, errors: Option<&Proof>, is_proof: bool) -> Row
         worst_input: errors
             .map(|errors| errors.worst_input.clone())
             .unwrap_or_default(),
+        compiler: measurement.compiler.clone(),
     }
 }
 

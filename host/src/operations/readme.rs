@@ -12,6 +12,7 @@ use crate::firmware::workspace;
 
 const START: &str = "<!-- prices -->\n";
 const END: &str = "<!-- /prices -->";
+const COMPILED_BY: &str = "Compiled by rustc ";
 
 /// Why the README is as it was.
 #[derive(Debug, thiserror::Error)]
@@ -97,5 +98,15 @@ pub fn markdown(rows: &[Row]) -> String {
             );
         }
     }
+    if let Some(row) = rows.first() {
+        text += &format!("\n{COMPILED_BY}{}.\n", row.compiler);
+    }
     text
+}
+
+/// The version of the compiler that a table's costs are of.
+pub fn compiler(table: &str) -> Option<&str> {
+    table
+        .lines()
+        .find_map(|line| line.strip_prefix(COMPILED_BY)?.strip_suffix('.'))
 }
