@@ -124,6 +124,13 @@ fn no_operation_costs_more_than_it_may() {
         assert!(is_correctly_rounded(error(op, variant)), "{op}, {variant}");
     }
     assert!(error("sine and cosine", "angle::quadratic_cos_sin") <= 1.0);
+    // In 64 bits nothing is lost.
+    for variant in ["product::accumulate", "product::wrapping_accumulate"] {
+        assert_eq!(error("multiply and add", variant), 0.0, "{variant}");
+    }
+    for variant in ["product::dot", "product::wrapping_dot"] {
+        assert_eq!(error("dot product", variant), 0.0, "{variant}");
+    }
 }
 
 /// Half an ulp, but for what a double's rounding adds.

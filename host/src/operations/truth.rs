@@ -74,7 +74,11 @@ impl Real {
             return Self::sum(end, -2f64.powi(-format.fraction_bits));
         }
         let start = if format.signed { -end } else { 0.0 };
-        if self.high < start { start.into() } else { self }
+        if self.lies_below(start) {
+            start.into()
+        } else {
+            self
+        }
     }
 
     /// Whether it lies between the ends of a format.
@@ -82,7 +86,12 @@ impl Real {
         let end = 2f64.powi(format.integer_bits);
         let start = if format.signed { -end } else { 0.0 };
         let room = (end - self.high) - self.low;
-        self.high >= start && room >= 2f64.powi(-format.fraction_bits)
+        !self.lies_below(start) && room >= 2f64.powi(-format.fraction_bits)
+    }
+
+    /// Whether it lies below `start`, if only by its lower part.
+    fn lies_below(self, start: f64) -> bool {
+        (self.high - start) + self.low < 0.0
     }
 
     /// How far `found` is from it.
@@ -229,6 +238,27 @@ mod tests {
         let root = first(Function::SquareRoot, &[2.0]);
         let square = root.high.mul_add(root.high, -2.0) + 2.0 * root.high * root.low;
         assert!(square.abs() < 1e-31, "{square}");
+    }
+
+    #[test]
+    fn a_format_ends_where_it_ends_to_the_last_bit() {
+        let wide = Format {
+            integer_bits: 31,
+            fraction_bits: 32,
+            signed: true,
+        };
+        let ulp = 2f64.powi(-32);
+        let least = Real::from(-(2f64.powi(31)));
+        assert!(least.fits(wide));
+        // Both are -2^31 to the last bit of their upper parts.
+        let below = Real { low: -ulp, ..least };
+        let above = Real { low: ulp, ..least };
+        assert!(!below.fits(wide) && above.fits(wide));
+        assert_eq!((below.clamped(wide), above.clamped(wide)), (least, above));
+        let beyond = Real::from(2f64.powi(31));
+        let largest = Real { low: -ulp, ..beyond };
+        assert!(!beyond.fits(wide) && largest.fits(wide));
+        assert_eq!(beyond.clamped(wide), largest);
     }
 
     #[test]
