@@ -1,8 +1,9 @@
-//! Says whether the target has the instructions of `src/assembly/arm.rs`: ARM's own 32-bit set, or Thumb with 32-bit
-//! instructions. The target's name tells; a stable compiler keeps the instruction set from `cfg`.
+//! Says whether the target has the instructions of `src/assembly/arm.rs`, ARM's own 32-bit set, or Thumb with 32-bit
+//! instructions; and whether it is a microcontroller that divides. The target's name tells; a stable compiler keeps the
+//! instruction set from `cfg`.
 
 fn main() {
-    println!("cargo::rustc-check-cfg=cfg(shifted_operands)");
+    println!("cargo::rustc-check-cfg=cfg(shifted_operands, hardware_divide)");
     println!("cargo::rerun-if-changed=build.rs");
     let target = std::env::var("TARGET").unwrap_or_default();
     let arm =
@@ -12,5 +13,8 @@ fn main() {
         .any(|start| target.starts_with(start));
     if arm || thumb2 {
         println!("cargo::rustc-cfg=shifted_operands");
+    }
+    if thumb2 || target.starts_with("thumbv8m.base") {
+        println!("cargo::rustc-cfg=hardware_divide");
     }
 }

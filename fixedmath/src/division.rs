@@ -104,10 +104,25 @@ pub const fn reciprocal(x: I16F16) -> I16F16 {
     if divisor <= 2 {
         return I16F16::from_bits(i32::MAX ^ sign);
     }
-    let shift = divisor.leading_zeros();
-    let quotient = reciprocal_of_normal(divisor << shift) >> (31 - shift);
+    let quotient = if cfg!(hardware_divide) {
+        divided_out(divisor)
+    } else {
+        multiplied_out(divisor)
+    };
     let remainder = 0u32.wrapping_sub(quotient.wrapping_mul(divisor));
     signed(mended(quotient, remainder, divisor), sign)
+}
+
+/// 2^32 / `divisor` rounded down, or one less, for divisors above 2: where the core divides, in one instruction.
+const fn divided_out(divisor: u32) -> u32 {
+    u32::MAX / divisor
+}
+
+/// As [`divided_out`], for cores that do not divide; where both fall short they need not do so together.
+#[inline]
+const fn multiplied_out(divisor: u32) -> u32 {
+    let shift = divisor.leading_zeros();
+    reciprocal_of_normal(divisor << shift) >> (31 - shift)
 }
 
 /// [`reciprocal`], or `None` for 0, 1 and 2 ulp and -1 ulp.
@@ -221,11 +236,34 @@ const fn lines() -> [[u32; 2]; 32] {
 
 #[cfg(test)]
 mod tests {
-    use super::{quotient, reciprocal_of_normal};
+    use super::{divided_out, mended, multiplied_out, quotient, reciprocal_of_normal};
 
     /// How far the reciprocal lies below 2^63 / `d`, times `d`.
     fn shortfall(d: u32) -> u64 {
         (1 << 63) - u64::from(d) * u64::from(reciprocal_of_normal(d))
+    }
+
+    /// Cores with a divide instruction and cores without one give the same reciprocals.
+    #[test]
+    fn both_ways_to_a_reciprocal_are_mended_to_the_same() {
+        let nearest = |quotient: u32, divisor: u32| {
+            mended(
+                quotient,
+                0u32.wrapping_sub(quotient.wrapping_mul(divisor)),
+                divisor,
+            )
+        };
+        let powers = (2..32).flat_map(|place| [(1u32 << place) - 1, 1 << place, (1 << place) + 1]);
+        let spread = (0..1u32 << 22).map(|step| (step << 9 | step >> 13).clamp(3, 1 << 31));
+        for divisor in (3..1 << 17)
+            .chain(powers.filter(|&divisor| divisor > 2))
+            .chain(spread)
+        {
+            let exact = ((1u64 << 33) / u64::from(divisor)).div_ceil(2);
+            for quotient in [divided_out(divisor), multiplied_out(divisor)] {
+                assert_eq!(u64::from(nearest(quotient, divisor)), exact, "1 / {divisor}");
+            }
+        }
     }
 
     /// Why a quotient is never more than one too small, whatever the dividend.

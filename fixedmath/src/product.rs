@@ -147,6 +147,11 @@ pub const fn checked_scaled(length: I16F16, component: I2F30) -> Option<I16F16> 
     ))
 }
 
+/// [`truncated_scaled`], or `None` where the product does not fit.
+pub const fn checked_truncated_scaled(length: I16F16, component: I2F30) -> Option<I16F16> {
+    lengths(fitting::<30>(wide(length.to_bits(), component.to_bits())))
+}
+
 /// A product of two direction components, to the nearest, halves up: within 0.5 ulp of 2^-30. Saturates, which only
 /// components outside [-1, 1] can bring about.
 ///
@@ -208,6 +213,21 @@ pub fn rounded(sum: I32F32) -> I16F16 {
     I16F16::from_bits(assembly::saturated::<16>(sum.to_bits()))
 }
 
+/// [`rounded`], or `None` where the sum does not fit.
+///
+/// ```
+/// use fixedmath::{product, I16F16, I32F32};
+/// let half_ulp = I32F32::from_bits(1 << 15);
+/// assert_eq!(product::checked_rounded(half_ulp), Some(I16F16::from_bits(1)));
+/// assert_eq!(product::checked_rounded(I32F32::from_num(32_768) - half_ulp), None);
+/// ```
+pub const fn checked_rounded(sum: I32F32) -> Option<I16F16> {
+    match sum.to_bits().checked_add(half::<16>()) {
+        Some(sum) => lengths(fitting::<16>(sum)),
+        None => None,
+    }
+}
+
 /// The dot product of two 16:16 vectors in 32:32: exact, or saturated, sum by sum, where one leaves the format.
 ///
 /// Cost: 17 instructions.
@@ -257,10 +277,7 @@ pub fn rounded_dot(a: [I16F16; 3], b: [I16F16; 3]) -> I16F16 {
 /// [`rounded_dot`], or `None` where the result does not fit, for components of any magnitude.
 pub const fn checked_rounded_dot(a: [I16F16; 3], b: [I16F16; 3]) -> Option<I16F16> {
     match checked_dot(a, b) {
-        Some(sum) => match sum.to_bits().checked_add(half::<16>()) {
-            Some(sum) => lengths(fitting::<16>(sum)),
-            None => None,
-        },
+        Some(sum) => checked_rounded(sum),
         None => None,
     }
 }

@@ -259,6 +259,16 @@ pub const fn nearest(v: u64) -> u32 {
     }
 }
 
+/// [`nearest`], or `None` where that is 2^32.
+pub const fn checked_nearest(v: u64) -> Option<u32> {
+    // (2^32 - 1/2)^2 is 2^64 - 2^32 + 1/4.
+    if v > 0xffff_ffff_0000_0000 {
+        None
+    } else {
+        Some(nearest(v))
+    }
+}
+
 /// The square root of `v`, rounded down.
 ///
 /// Cost: 44 instructions.

@@ -136,6 +136,9 @@ fn stretched(component: i32, inverse: i32) -> I2F30 {
     I2F30::from_bits(assembly::rounded::<31>(component as i64 * inverse as i64))
 }
 
+/// The squared length from which on [`renormalised`] gives zero: 3, in 4:60.
+const NOTHING_LEFT: u64 = 3 << 60;
+
 /// A vector whose length is 1 + e brought to length 1 - 3/2 e^2 - 1/2 e^3: one Newton step, no root.
 ///
 /// For directions that rounding has moved off the sphere. The step shortens what is longer than sqrt(3) to nothing: such
@@ -146,16 +149,24 @@ fn stretched(component: i32, inverse: i32) -> I2F30 {
 pub fn renormalised(v: [I2F30; 3]) -> [I2F30; 3] {
     let square = square(unit_bits(v));
     // (3 - |v|^2) / 2 in 2:30; the upper word alone tells whether that is negative.
-    let factor = if (square >> 32) as u32 >= 3 << 28 {
+    let factor = if (square >> 32) as u32 >= (NOTHING_LEFT >> 32) as u32 {
         0
     } else {
-        (((3 << 60) - square) >> 31) as i32
+        ((NOTHING_LEFT - square) >> 31) as i32
     };
     [
         corrected(v[0], factor),
         corrected(v[1], factor),
         corrected(v[2], factor),
     ]
+}
+
+/// [`renormalised`], or `None` for zero and for lengths of sqrt(3) and more, which have no direction left.
+pub fn checked_renormalised(v: [I2F30; 3]) -> Option<[I2F30; 3]> {
+    match square(unit_bits(v)) {
+        1..NOTHING_LEFT => Some(renormalised(v)),
+        _ => None,
+    }
 }
 
 fn corrected(component: I2F30, factor: i32) -> I2F30 {

@@ -78,6 +78,10 @@ fn products_with_components_round_saturate_wrap_and_refuse_as_they_say() {
         let (x, u) = (length(a), unit(b));
         let (down, near) = (exact >> 30, (exact + (1 << 29)) >> 30);
         assert_eq!(product::truncated_scaled(x, u).to_bits(), clamp(down), "{a} {b}");
+        assert_eq!(
+            product::checked_truncated_scaled(x, u).map(I16F16::to_bits),
+            fitting(down)
+        );
         assert_eq!(product::scaled(x, u).to_bits(), clamp(near), "{a} {b}");
         assert_eq!(product::wrapping_scaled(x, u).to_bits(), near as i32, "{a} {b}");
         assert_eq!(product::checked_scaled(x, u).map(I16F16::to_bits), fitting(near));
@@ -148,6 +152,8 @@ fn sums_accumulate_exactly_or_saturate() {
         assert_eq!(checked, i64::try_from(exact).ok());
         let near = (i128::from(sum) + (1 << 15)) >> 16;
         assert_eq!(product::rounded(start).to_bits(), clamp(near));
+        let checked = product::checked_rounded(start).map(I16F16::to_bits);
+        assert_eq!(checked, fitting(near));
     }
 }
 

@@ -214,6 +214,7 @@ fn renormalising_squares_the_error_away() {
             (left + 1.5 * e * e + 0.5 * e * e * e).abs() < 4e-9,
             "{e} left {left}"
         );
+        assert_eq!(unit::checked_renormalised(off), Some(unit::renormalised(off)));
     }
 }
 
@@ -226,5 +227,11 @@ fn renormalising_the_longest_and_the_zero_vector() {
         [I2F30::ZERO; 3],
     ] {
         assert_eq!(unit::renormalised(v), [I2F30::ZERO; 3], "{v:?}");
+        assert_eq!(unit::checked_renormalised(v), None, "{v:?}");
     }
+    let nearly = [I2F30::ONE, I2F30::ONE, I2F30::DELTA - I2F30::ONE];
+    assert_eq!(
+        unit::checked_renormalised(nearly),
+        Some(unit::renormalised(nearly))
+    );
 }

@@ -6,14 +6,19 @@ fn exact_floor(v: u64) -> u32 {
     u32::try_from(v.isqrt()).unwrap()
 }
 
-fn exact_nearest(v: u64) -> u32 {
+fn fitting_nearest(v: u64) -> Option<u32> {
     let root = v.isqrt();
-    u32::try_from(root + u64::from(v - root * root > root)).unwrap_or(u32::MAX)
+    u32::try_from(root + u64::from(v - root * root > root)).ok()
+}
+
+fn exact_nearest(v: u64) -> u32 {
+    fitting_nearest(v).unwrap_or(u32::MAX)
 }
 
 fn agree(v: u64) {
     assert_eq!(root::floor(v), exact_floor(v), "floor of {v:#x}");
     assert_eq!(root::nearest(v), exact_nearest(v), "nearest of {v:#x}");
+    assert_eq!(root::checked_nearest(v), fitting_nearest(v), "nearest of {v:#x}");
 }
 
 #[test]
@@ -25,6 +30,8 @@ fn edges_and_neighbours_of_squares() {
         3,
         u64::MAX,
         u64::MAX - 1,
+        0xffff_ffff_0000_0000,
+        0xffff_ffff_0000_0001,
         1 << 63,
         (1 << 62) - 1,
         1 << 62,

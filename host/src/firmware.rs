@@ -15,44 +15,9 @@ use object::{Object, ObjectSection, ObjectSegment, ObjectSymbol, SectionFlags};
 use serde::Serialize;
 
 use crate::arithmetic::Arithmetic;
+use crate::board::{Board, DTCM_BUDGET, ITCM_BUDGET};
 use crate::scene::SceneNeeds;
 use crate::setup::Toolchain;
-
-/// Usable bytes of instruction memory: code, constants and first values.
-pub const ITCM_BUDGET: u64 = 0x7F00;
-/// Usable bytes of data memory: boot block, data and stacks.
-pub const DTCM_BUDGET: u64 = 0xF800;
-
-/// Instructions in a tick of the boards' clocks of 24 MHz, where an instruction is a nanosecond.
-pub const INSTRUCTIONS_PER_TICK: f64 = 1000.0 / 24.0;
-
-const TARGET: &str = "armv5te-none-eabi";
-const BOARD: &str = "versatilepb";
-/// Where data memory starts; instruction memory starts at 0.
-const DTCM: u64 = 0x0040_0000;
-const ITCM_END: u64 = 0x8000;
-const DTCM_END: u64 = DTCM + 0x1_0000;
-
-/// A board the firmware exists for.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
-pub enum Board {
-    /// ARMv5TE, an ARM946E-S on QEMU.
-    #[default]
-    Versatilepb,
-    /// Cortex-M3 on QEMU.
-    #[value(name = "mps2-an385")]
-    Mps2An385,
-}
-
-impl Board {
-    /// The name used by `--board` and in reports.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Versatilepb => BOARD,
-            Self::Mps2An385 => "mps2-an385",
-        }
-    }
-}
 
 /// What an image is to be built for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -81,8 +46,8 @@ impl Recipe {
     }
 
     /// The image's file name.
-    fn file_name(&self) -> String {
-        format!("{BOARD}-{}-{}.elf", self.profile, self.words().replace(',', "-"))
+    fn file_name(&self, board: Board) -> String {
+        format!("{board}-{}-{}.elf", self.profile, self.words().replace(',', "-"))
     }
 }
 
@@ -130,8 +95,10 @@ pub enum FirmwareError {
         cause: io::Error,
     },
     /// The build failed.
-    #[error("firmware: the build for profile {profile} and needs `{needs}` failed:\n{output}")]
+    #[error("firmware: the build for {board}, profile {profile} and needs `{needs}` failed:\n{output}")]
     Build {
+        /// The board.
+        board: Board,
         /// The profile.
         profile: Arithmetic,
         /// The needs.
@@ -140,8 +107,10 @@ pub enum FirmwareError {
         output: String,
     },
     /// The build of an example failed.
-    #[error("firmware: the build of {names} failed:\n{output}")]
+    #[error("firmware: the build of {names} for {board} failed:\n{output}")]
     Example {
+        /// The board.
+        board: Board,
         /// The examples.
         names: String,
         /// What the compiler or the linker said.
@@ -169,8 +138,8 @@ pub enum FirmwareError {
     },
 }
 
-/// Builds the image for `recipe` and checks it.
-pub fn build(toolchain: &Toolchain, recipe: &Recipe) -> Result<Image, FirmwareError> {
+/// Builds a board's image for `recipe` and checks it.
+pub fn build(toolchain: &Toolchain, board: Board, recipe: &Recipe) -> Result<Image, FirmwareError> {
     let folder = target_folder();
     let images = folder.join("images");
     let failed = |path: &Path| {
@@ -182,21 +151,22 @@ pub fn build(toolchain: &Toolchain, recipe: &Recipe) -> Result<Image, FirmwareEr
     let lock_path = images.join(".lock");
     let lock = File::create(&lock_path).map_err(failed(&lock_path))?;
     lock.lock().map_err(failed(&lock_path))?;
-    let mut command = cargo(toolchain, "build", recipe);
+    let mut command = cargo(toolchain, board, "build", recipe);
     let output = command.output().map_err(failed(&toolchain.compiler.cargo))?;
     if !output.status.success() {
         return Err(FirmwareError::Build {
+            board,
             profile: recipe.profile,
             needs: recipe.words(),
             output: String::from_utf8_lossy(&output.stderr).trim_end().to_owned(),
         });
     }
-    let built = folder.join(TARGET).join("firmware").join(BOARD);
-    let elf = images.join(recipe.file_name());
+    let built = folder.join(board.target()).join("firmware").join(board.name());
+    let elf = images.join(recipe.file_name(board));
     fs::copy(&built, &elf).map_err(failed(&built))?;
     drop(lock);
     let bytes = fs::read(&elf).map_err(failed(&elf))?;
-    let size = measure(&bytes).map_err(|cause| FirmwareError::Elf {
+    let size = measure(board, &bytes).map_err(|cause| FirmwareError::Elf {
         path: elf.clone(),
         cause,
     })?;
@@ -210,8 +180,12 @@ pub fn build(toolchain: &Toolchain, recipe: &Recipe) -> Result<Image, FirmwareEr
     }
 }
 
-/// Builds examples of the board's crate, which need no scene, and says where their ELF files are.
-pub fn build_examples(toolchain: &Toolchain, names: &[String]) -> Result<Vec<PathBuf>, FirmwareError> {
+/// Builds examples of a board's crate, which need no scene, and says where their ELF files are.
+pub fn build_examples(
+    toolchain: &Toolchain,
+    board: Board,
+    names: &[String],
+) -> Result<Vec<PathBuf>, FirmwareError> {
     let recipe = Recipe {
         profile: Arithmetic::Precise,
         needs: SceneNeeds {
@@ -221,7 +195,7 @@ pub fn build_examples(toolchain: &Toolchain, names: &[String]) -> Result<Vec<Pat
         },
         roulette: true,
     };
-    let mut command = cargo(toolchain, "build", &recipe);
+    let mut command = cargo(toolchain, board, "build", &recipe);
     for name in names {
         command.args(["--example", name]);
     }
@@ -231,17 +205,23 @@ pub fn build_examples(toolchain: &Toolchain, names: &[String]) -> Result<Vec<Pat
     })?;
     if !output.status.success() {
         return Err(FirmwareError::Example {
+            board,
             names: names.join(", "),
             output: String::from_utf8_lossy(&output.stderr).trim_end().to_owned(),
         });
     }
-    let folder = target_folder().join(TARGET).join("firmware").join("examples");
-    Ok(names.iter().map(|name| folder.join(name)).collect())
+    Ok(names.iter().map(|name| example(board, name)).collect())
 }
 
-/// A cargo command line on the board's crate: `build`, or `clippy`.
-pub fn cargo(toolchain: &Toolchain, verb: &str, recipe: &Recipe) -> Command {
-    let mut command = cargo_for(toolchain, verb, BOARD, TARGET);
+/// Where an example of a board's crate is, once it is built.
+pub fn example(board: Board, name: &str) -> PathBuf {
+    let folder = target_folder().join(board.target());
+    folder.join("firmware").join("examples").join(name)
+}
+
+/// A cargo command line on a board's crate: `build`, or `clippy`.
+pub fn cargo(toolchain: &Toolchain, board: Board, verb: &str, recipe: &Recipe) -> Command {
+    let mut command = cargo_for(toolchain, verb, board.name(), board.target());
     command
         .env("TRACER_PROFILE", recipe.profile.name())
         .env("TRACER_NEEDS", recipe.words());
@@ -260,7 +240,7 @@ pub fn cargo_for(toolchain: &Toolchain, verb: &str, package: &str, target: &str)
         .env("RUSTC", &toolchain.compiler.rustc)
         // What lets a stable compiler build its own library.
         .env("RUSTC_BOOTSTRAP", "1")
-        .env("CARGO_TARGET_ARMV5TE_NONE_EABI_LINKER", &toolchain.linker)
+        .env(linker_variable(target), &toolchain.linker)
         // Cargo's subcommands must be of the same toolchain.
         .env("PATH", path_from(toolchain.compiler.cargo.parent()))
         // Flags meant for the host's programs are not for a board's.
@@ -268,6 +248,12 @@ pub fn cargo_for(toolchain: &Toolchain, verb: &str, package: &str, target: &str)
         .env_remove("CARGO_ENCODED_RUSTFLAGS")
         .env_remove("RUSTUP_TOOLCHAIN");
     command
+}
+
+/// Where cargo looks for a target's linker.
+fn linker_variable(target: &str) -> String {
+    let target = target.replace('-', "_").to_uppercase();
+    format!("CARGO_TARGET_{target}_LINKER")
 }
 
 /// PATH with another folder before all others.
@@ -293,8 +279,19 @@ pub fn target_folder() -> PathBuf {
     workspace().join(target).join("firmware")
 }
 
-/// Measures an ELF file. What takes memory of a core is what is loaded there and what its sections reserve.
-pub fn measure(elf: &[u8]) -> Result<ImageSize, String> {
+/// The board that an image is for: the one whose data memory begins with the image's boot block.
+pub fn board_of(elf: &[u8]) -> Result<Board, String> {
+    let file = object::File::parse(elf).map_err(|error| error.to_string())?;
+    let boot_block = file.symbol_by_name("__boot_block").map(|symbol| symbol.address());
+    let boards = Board::ALL.into_iter();
+    boards
+        .filter(|board| Some(board.dtcm().start) == boot_block)
+        .next()
+        .ok_or_else(|| "it has no boot block where a board of ours looks for one".to_owned())
+}
+
+/// Measures a board's ELF file. What takes memory of a core is what is loaded there and what its sections reserve.
+pub fn measure(board: Board, elf: &[u8]) -> Result<ImageSize, String> {
     let file = object::File::parse(elf).map_err(|error| error.to_string())?;
     let symbol = |name: &str| {
         let found = file.symbol_by_name(name).map(|symbol| symbol.address());
@@ -308,16 +305,16 @@ pub fn measure(elf: &[u8]) -> Result<ImageSize, String> {
     size.dtcm_bytes = symbol("__boot_block_size")?;
     for section in file.sections().filter(is_allocated) {
         let address = section.address();
-        if (DTCM..DTCM_END).contains(&address) && !stacks.contains(&address) {
+        if board.dtcm().contains(&address) && !stacks.contains(&address) {
             size.dtcm_bytes += section.size();
-        } else if address < ITCM_END {
+        } else if board.itcm().contains(&address) {
             size.itcm_bytes += section.size();
         }
     }
     // The first values of .data lie in instruction memory until start-up copies them.
     size.itcm_bytes += file
         .segments()
-        .filter(|segment| (DTCM..DTCM_END).contains(&segment.address()))
+        .filter(|segment| board.dtcm().contains(&segment.address()))
         .map(|segment| segment.file_range().1)
         .sum::<u64>();
     let names = file
@@ -423,7 +420,10 @@ mod tests {
             roulette: true,
         };
         assert_eq!(recipe.words(), "diffuse,glass,roulette");
-        assert_eq!(recipe.file_name(), "versatilepb-paper-diffuse-glass-roulette.elf");
+        assert_eq!(
+            recipe.file_name(Board::Mps2An385),
+            "mps2-an385-paper-diffuse-glass-roulette.elf"
+        );
         let nothing = SceneNeeds {
             diffuse: false,
             mirror: false,
@@ -441,11 +441,11 @@ mod tests {
 
     #[test]
     fn what_is_no_elf_is_refused() {
-        assert!(measure(b"no ELF at all").is_err());
+        assert!(measure(Board::Versatilepb, b"no ELF at all").is_err());
         // This test's own program is an ELF, but no image.
         let own = fs::read(std::env::current_exe().expect("a program")).expect("its bytes");
         assert!(
-            measure(&own)
+            measure(Board::Versatilepb, &own)
                 .expect_err("not an image")
                 .contains("_stacks_low_end")
         );

@@ -7,6 +7,7 @@
 //! of the arithmetic.
 
 pub mod arithmetic;
+pub mod board;
 pub mod collector;
 pub mod compare;
 pub mod difference;

@@ -3,11 +3,12 @@
 use std::process::{Command, Output};
 
 use host::arithmetic::Arithmetic;
+use host::board::Board;
 use host::firmware::{self, Recipe, build};
-use host::fleet::command_line;
 use host::scene::SceneNeeds;
 use host::setup::{self, Install, Toolchain, Wanted};
 
+const BOARD: Board = Board::Versatilepb;
 const ALL: SceneNeeds = SceneNeeds {
     diffuse: true,
     mirror: true,
@@ -35,13 +36,9 @@ fn toolchain() -> Toolchain {
 
 /// Builds one of the board's examples, and says where its ELF is.
 fn example(name: &str) -> (Output, std::path::PathBuf) {
-    let mut command = firmware::cargo(&toolchain(), "build", &recipe(Arithmetic::Precise, ALL));
+    let mut command = firmware::cargo(&toolchain(), BOARD, "build", &recipe(Arithmetic::Precise, ALL));
     let output = command.args(["--example", name]).output().unwrap();
-    let folder = firmware::target_folder();
-    (
-        output,
-        folder.join("armv5te-none-eabi/firmware/examples").join(name),
-    )
+    (output, firmware::example(BOARD, name))
 }
 
 fn refused(name: &str) -> String {
@@ -64,7 +61,7 @@ fn run(name: &str) -> (Option<i32>, String) {
     };
     let qemu = setup::ensure(wanted, Install::Forbidden).unwrap().qemu.unwrap();
     let output = Command::new(qemu)
-        .args(command_line(&elf, None))
+        .args(BOARD.command_line(&elf, None))
         .output()
         .unwrap();
     let said = [output.stdout, output.stderr]
@@ -111,7 +108,7 @@ fn a_panic_and_a_fault_say_what_and_where_and_end_the_core() {
 fn every_image_fits_and_holds_no_more_than_its_scene_needs() {
     let toolchain = toolchain();
     for profile in Arithmetic::ALL {
-        let full = build(&toolchain, &recipe(profile, ALL)).unwrap().size;
+        let full = build(&toolchain, BOARD, &recipe(profile, ALL)).unwrap().size;
         println!("{profile}: {full}");
         assert!(full.float_symbols.is_empty());
         let plain = SceneNeeds {
@@ -119,7 +116,7 @@ fn every_image_fits_and_holds_no_more_than_its_scene_needs() {
             glass: false,
             ..ALL
         };
-        let plain = build(&toolchain, &recipe(profile, plain)).unwrap().size;
+        let plain = build(&toolchain, BOARD, &recipe(profile, plain)).unwrap().size;
         println!("{profile}, diffuse only: {plain}");
         assert!(
             plain.itcm_bytes + 500 < full.itcm_bytes,
@@ -133,7 +130,7 @@ fn every_image_fits_and_holds_no_more_than_its_scene_needs() {
 #[test]
 fn the_arithmetic_of_the_cornell_box_is_small() {
     const BUDGET: usize = 4096;
-    let image = build(&toolchain(), &recipe(Arithmetic::Precise, ALL)).unwrap();
+    let image = build(&toolchain(), BOARD, &recipe(Arithmetic::Precise, ALL)).unwrap();
     let loader = addr2line::Loader::new(&image.elf).unwrap();
     let is_arithmetic = |address: u64| {
         let mut frames = loader.find_frames(address).unwrap();

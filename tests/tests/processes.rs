@@ -7,6 +7,7 @@ use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
 use host::arithmetic::Arithmetic;
+use host::board::Board;
 use host::firmware::{self, Recipe};
 use host::scene::SceneNeeds;
 use host::setup::{self, Install, Wanted};
@@ -207,7 +208,7 @@ fn the_collector_takes_cores_that_are_started_elsewhere() {
         needs,
         roulette: true,
     };
-    let image = firmware::build(&toolchain, &recipe).expect("an image");
+    let image = firmware::build(&toolchain, Board::Versatilepb, &recipe).expect("an image");
     let elf = image.elf.to_str().expect("UTF-8");
     let out = tempfile::tempdir().expect("a folder");
 

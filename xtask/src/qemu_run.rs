@@ -1,10 +1,11 @@
 //! `cargo xtask qemu-run`
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
-use anyhow::Context;
-use host::fleet::command_line;
+use anyhow::{Context, anyhow};
+use host::board::Board;
+use host::firmware;
 use host::setup::{self, Wanted};
 
 use crate::SetUp;
@@ -14,6 +15,9 @@ use crate::SetUp;
 pub(crate) struct Arguments {
     /// The image
     elf: PathBuf,
+    /// Board to run it on [default: the one it was linked for]
+    #[arg(long, value_enum)]
+    board: Option<Board>,
     /// Boot block for the core, as the collector writes it
     #[arg(long, value_name = "FILE")]
     boot: Option<PathBuf>,
@@ -28,6 +32,10 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
     {
         std::fs::File::open(file).with_context(|| format!("cannot read {}", file.display()))?;
     }
+    let board = match arguments.board {
+        Some(board) => board,
+        None => linked_for(&arguments.elf)?,
+    };
     let tools = setup::ensure(
         Wanted {
             qemu: true,
@@ -37,7 +45,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
     )?;
     let qemu = tools.qemu.context("set-up gave no QEMU")?;
     let mut command = Command::new(&qemu);
-    command.args(command_line(&arguments.elf, arguments.boot.as_deref()));
+    command.args(board.command_line(&arguments.elf, arguments.boot.as_deref()));
     let status = command
         .status()
         .with_context(|| format!("cannot start {}", qemu.display()))?;
@@ -46,4 +54,10 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
         .with_context(|| format!("QEMU did not end by itself: {status}"))?;
     // Exit codes have eight bits.
     Ok(ExitCode::from(code as u8))
+}
+
+fn linked_for(elf: &Path) -> anyhow::Result<Board> {
+    let bytes = std::fs::read(elf).with_context(|| format!("cannot read {}", elf.display()))?;
+    let board = firmware::board_of(&bytes);
+    board.map_err(|cause| anyhow!("{}: {cause}; say which with --board", elf.display()))
 }

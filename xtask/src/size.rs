@@ -5,7 +5,8 @@ use std::process::ExitCode;
 
 use anyhow::{Context, ensure};
 use host::arithmetic::Arithmetic;
-use host::firmware::{self, Board, DTCM_BUDGET, ITCM_BUDGET, ImageSize, Recipe};
+use host::board::{Board, DTCM_BUDGET, ITCM_BUDGET};
+use host::firmware::{self, ImageSize, Recipe};
 use host::scene::{Scene, compile};
 use host::setup::{self, Toolchain, Wanted};
 use serde::Serialize;
@@ -63,18 +64,18 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
 pub(crate) fn measure(toolchain: &Toolchain, scene: &Scene) -> anyhow::Result<Vec<Row>> {
     // The image does not depend on the size of the picture.
     let needs = compile(scene, 4, 3).needs;
-    let row = |profile: Arithmetic| {
+    let row = |(board, profile): (Board, Arithmetic)| {
         let image = firmware::build(
             toolchain,
+            board,
             &Recipe {
                 profile,
                 needs,
                 roulette: true,
             },
         )?;
-        let board = Board::Versatilepb.name();
         let row = Row {
-            board,
+            board: board.name(),
             scene: scene.name.clone(),
             profile: profile.name(),
             size: image.size,
@@ -86,7 +87,10 @@ pub(crate) fn measure(toolchain: &Toolchain, scene: &Scene) -> anyhow::Result<Ve
         );
         Ok(row)
     };
-    Arithmetic::ALL.into_iter().map(row).collect()
+    let both = Board::ALL
+        .into_iter()
+        .flat_map(|board| Arithmetic::ALL.map(|profile| (board, profile)));
+    both.map(row).collect()
 }
 
 /// The rows for people.

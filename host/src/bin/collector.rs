@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Parser;
+use host::board::Board;
 use host::collector::{self, CollectError};
-use host::firmware::Board;
 use host::interrupt;
 use host::job::options::PictureOptions;
 use host::job::{Job, JobError, boot_blocks};

@@ -1,6 +1,5 @@
 //! Cores as QEMU processes.
 
-use std::ffi::OsString;
 use std::fs::{self, File};
 use std::io::{self, Read, Seek, SeekFrom};
 use std::os::unix::process::{CommandExt, ExitStatusExt};
@@ -9,56 +8,31 @@ use std::process::{Child, Command, ExitStatus, Output, Stdio};
 use std::time::{Duration, Instant};
 
 use super::{FleetError, LAST_LINES};
+use crate::board::Board;
 use crate::{memory, setup};
 
-/// Where a board looks for its boot block.
-const BOOT_ADDRESS: u32 = 0x0040_0000;
 /// Time between two looks at the processes' memory, which nobody can ask for once they have ended.
 const MEASURE_EVERY: Duration = Duration::from_millis(250);
 /// How much of the end of a log is read for its last lines.
 const TAIL: u64 = 4096;
 
-/// The arguments that make QEMU the board `versatilepb`, running `elf` with the boot block in file `boot`.
-pub fn command_line(elf: &Path, boot: Option<&Path>) -> Vec<OsString> {
-    // One instruction is one virtual nanosecond (`-icount shift=0`): the core's clock counts instructions.
-    let mut arguments: Vec<OsString> = [
-        "-M",
-        "versatilepb",
-        "-cpu",
-        "arm946",
-        "-m",
-        "64",
-        "-nographic",
-        "-audiodev",
-        "none,id=a",
-        // Of the board's sound chip, which would otherwise complain on the console.
-        "-global",
-        "pl041.audiodev=a",
-        "-semihosting",
-        "-icount",
-        "shift=0",
-        "-nic",
-        "user,model=smc91c111",
-        "-kernel",
-    ]
-    .map(OsString::from)
-    .to_vec();
-    arguments.push(elf.into());
-    if let Some(boot) = boot {
-        // QEMU ends an option's value at a comma unless it is doubled.
-        let file = boot.display().to_string().replace(',', ",,");
-        arguments.push("-device".into());
-        arguments.push(format!("loader,addr={BOOT_ADDRESS:#x},file={file},force-raw=on").into());
-    }
-    arguments
-}
-
 /// Runs an image that needs nobody else on one core, and waits for its end. Its console is the output.
-pub fn run_to_end(qemu: &Path, elf: &Path) -> io::Result<Output> {
+pub fn run_to_end(qemu: &Path, board: Board, elf: &Path) -> io::Result<Output> {
     bound_to_this_process(qemu)
-        .args(command_line(elf, None))
+        .args(board.command_line(elf, None))
         .stdin(Stdio::null())
         .output()
+}
+
+/// A core to be started.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Core {
+    /// The board it is on.
+    pub board: Board,
+    /// Its image.
+    pub elf: PathBuf,
+    /// Its boot block.
+    pub boot_block: Vec<u8>,
 }
 
 /// One emulated core.
@@ -78,16 +52,11 @@ pub struct QemuFleet {
 }
 
 impl QemuFleet {
-    /// Starts one process a boot block. `folder` gets, for each core N, `core-N.boot`, its console's `core-N.log`, and its
+    /// Starts one process a core. `folder` gets, for each core N, `core-N.boot`, its console's `core-N.log`, and its
     /// process's id in `core-N.pid`.
-    pub fn start(
-        qemu: &Path,
-        elf: &Path,
-        boot_blocks: &[Vec<u8>],
-        folder: &Path,
-    ) -> Result<Self, FleetError> {
+    pub fn start(qemu: &Path, cores: &[Core], folder: &Path) -> Result<Self, FleetError> {
         let mut fleet = Self {
-            guests: Vec::with_capacity(boot_blocks.len()),
+            guests: Vec::with_capacity(cores.len()),
             measured: Instant::now(),
         };
         let failed = |path: &Path| {
@@ -95,21 +64,23 @@ impl QemuFleet {
             move |cause| FleetError::File { path, cause }
         };
         fs::create_dir_all(folder).map_err(failed(folder))?;
-        for (core, block) in boot_blocks.iter().enumerate() {
-            let file = |extension| folder.join(format!("core-{core}.{extension}"));
+        for (number, core) in cores.iter().enumerate() {
+            let file = |extension| folder.join(format!("core-{number}.{extension}"));
             let (boot, log, pid) = (file("boot"), file("log"), file("pid"));
-            fs::write(&boot, block).map_err(failed(&boot))?;
+            fs::write(&boot, &core.boot_block).map_err(failed(&boot))?;
             let output = File::create(&log).map_err(failed(&log))?;
             let errors = output.try_clone().map_err(failed(&log))?;
             let mut command = bound_to_this_process(qemu);
-            command.args(command_line(elf, Some(&boot)));
+            command.args(core.board.command_line(&core.elf, Some(&boot)));
             command.stdin(Stdio::null()).stdout(output).stderr(errors);
             // Ctrl-C is for this process, which then ends its cores in order.
             command.process_group(0);
             let program = qemu.display().to_string();
-            let child = command
-                .spawn()
-                .map_err(|cause| FleetError::Start { core, program, cause })?;
+            let child = command.spawn().map_err(|cause| FleetError::Start {
+                core: number,
+                program,
+                cause,
+            })?;
             let id = child.id();
             fleet.guests.push(Guest {
                 child,
@@ -235,6 +206,14 @@ mod tests {
         path
     }
 
+    fn cores<const N: usize>(boot_blocks: [u8; N]) -> [Core; N] {
+        boot_blocks.map(|byte| Core {
+            board: Board::Versatilepb,
+            elf: "x.elf".into(),
+            boot_block: vec![byte],
+        })
+    }
+
     fn all_ended(fleet: &mut QemuFleet, cores: usize) -> Vec<u16> {
         let (start, mut ended) = (Instant::now(), Vec::new());
         while ended.len() < cores && start.elapsed() < Duration::from_secs(10) {
@@ -245,28 +224,13 @@ mod tests {
     }
 
     #[test]
-    fn a_comma_in_a_path_is_doubled_for_qemu() {
-        let words = command_line(Path::new("image.elf"), Some(Path::new("a,b/core-0.boot")));
-        let loader = words
-            .last()
-            .and_then(|word| word.to_str())
-            .expect("the last word");
-        assert_eq!(loader, "loader,addr=0x400000,file=a,,b/core-0.boot,force-raw=on");
-        assert_eq!(
-            command_line(Path::new("image.elf"), None).last(),
-            Some(&OsString::from("image.elf"))
-        );
-    }
-
-    #[test]
     fn the_end_of_a_core_is_noticed_once_and_told_with_its_last_lines() {
         let folder = tempfile::tempdir().expect("a folder");
         let qemu = fake_qemu(
             folder.path(),
             "for i in 1 2 3 4 5 6 7; do echo line $i; done; echo oh no >&2; exit 3",
         );
-        let mut fleet = QemuFleet::start(&qemu, Path::new("x.elf"), &[vec![1], vec![2]], folder.path())
-            .expect("it starts");
+        let mut fleet = QemuFleet::start(&qemu, &cores([1, 2]), folder.path()).expect("it starts");
         let mut ended = all_ended(&mut fleet, 2);
         ended.sort_unstable();
         assert_eq!(ended, [0, 1]);
@@ -286,10 +250,8 @@ mod tests {
     fn dropping_the_fleet_ends_its_processes_and_no_others() {
         let folder = tempfile::tempdir().expect("a folder");
         let qemu = fake_qemu(folder.path(), "exec sleep 60");
-        let start = |name: &str| {
-            QemuFleet::start(&qemu, Path::new("x.elf"), &[vec![1]], &folder.path().join(name))
-                .expect("it starts")
-        };
+        let start =
+            |name: &str| QemuFleet::start(&qemu, &cores([1]), &folder.path().join(name)).expect("it starts");
         let (dropped, mut kept) = (start("dropped"), start("kept"));
         let gone = dropped.process_ids()[0];
         drop(dropped);
@@ -301,7 +263,7 @@ mod tests {
     fn a_missing_emulator_is_named() {
         let folder = tempfile::tempdir().expect("a folder");
         let missing = folder.path().join("no-such-qemu");
-        match QemuFleet::start(&missing, Path::new("x.elf"), &[vec![1]], folder.path()) {
+        match QemuFleet::start(&missing, &cores([1]), folder.path()) {
             Err(error) => assert!(error.to_string().contains("no-such-qemu"), "{error}"),
             // `setpriv` starts and finds nothing to run.
             Ok(mut fleet) => {

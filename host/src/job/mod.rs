@@ -15,11 +15,12 @@ use std::time::{Duration, Instant};
 use tracer::unit::Termination;
 use wire::Name;
 
+use crate::board::Board;
 use crate::collector::{self, BindError, CollectError, Collection, End, Progress};
 use crate::compare::CompareError;
 use crate::file::WriteError;
-use crate::firmware::{self, Board, FirmwareError, Image, Recipe};
-use crate::fleet::{Fleet, FleetError, NativeFleet, QemuFleet};
+use crate::firmware::{self, FirmwareError, Recipe};
+use crate::fleet::{Core, Fleet, FleetError, NativeFleet, QemuFleet};
 use crate::memory;
 use crate::openexr::{self, ReadError};
 use crate::picture::Estimate;
@@ -42,9 +43,6 @@ pub enum JobError {
         /// What the system said.
         cause: std::io::Error,
     },
-    /// A board that is planned.
-    #[error("board {0} is not built yet: leave --board out, or say --board versatilepb")]
-    Board(&'static str),
     /// The picture has more units than there are ids.
     #[error("the picture has more than 2^32 work units: choose a smaller --size or --spp")]
     TooManyUnits,
@@ -99,12 +97,20 @@ pub struct Job {
 }
 
 /// How the cores were run, for the report.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 struct Origin {
     backend: &'static str,
-    board: Option<&'static str>,
+    boards: Vec<Board>,
     /// The ticks count instructions: one is one virtual nanosecond.
     counts_instructions: bool,
+}
+
+impl Origin {
+    /// The boards' names, if there are any.
+    fn boards(&self) -> Option<String> {
+        let names: Vec<&str> = self.boards.iter().map(|board| board.name()).collect();
+        (!names.is_empty()).then(|| names.join(","))
+    }
 }
 
 impl Job {
@@ -168,7 +174,7 @@ impl Job {
     ) -> Result<(), JobError> {
         let origin = Origin {
             backend: "elsewhere",
-            board: Some(board.name()),
+            boards: vec![board],
             counts_instructions: false,
         };
         self.collect(
@@ -234,9 +240,6 @@ impl Job {
 
 /// Renders a picture on cores of this host.
 pub fn render(options: &RenderOptions, interrupted: &AtomicBool) -> Result<(), JobError> {
-    if options.board != Board::Versatilepb {
-        return Err(JobError::Board(options.board.name()));
-    }
     let job = Job::new(&options.picture)?;
     let socket = collector::bind(Ipv4Addr::LOCALHOST, options.port.unwrap_or(0))?;
     let port = socket.local_addr().map_err(CollectError::Socket)?.port();
@@ -253,7 +256,7 @@ pub fn render(options: &RenderOptions, interrupted: &AtomicBool) -> Result<(), J
         Install::Allowed
     };
     let tools = setup::ensure(wanted, install)?;
-    let image = job.build(&tools)?;
+    let images = job.build(&tools, &options.boards)?;
     let route = if emulated {
         Route::qemu(port)
     } else {
@@ -261,49 +264,55 @@ pub fn render(options: &RenderOptions, interrupted: &AtomicBool) -> Result<(), J
     };
     let blocks = boot_blocks(&session, &route)?;
     let start = Instant::now();
-    let (fleet, origin) = match (&tools.qemu, &image) {
-        (Some(qemu), Some(image)) => {
-            let fleet = QemuFleet::start(qemu, &image.elf, &blocks, &job.out.join("cores"))?;
-            let board = Some(options.board.name());
-            (
-                Fleet::Qemu(fleet),
-                Origin {
-                    backend: "qemu",
-                    board,
-                    counts_instructions: true,
-                },
-            )
+    let (fleet, origin) = match &tools.qemu {
+        Some(qemu) => {
+            let turns = images.iter().cycle().zip(blocks);
+            let cores: Vec<Core> = turns
+                .map(|((board, elf), boot_block)| Core {
+                    board: *board,
+                    elf: elf.clone(),
+                    boot_block,
+                })
+                .collect();
+            let fleet = QemuFleet::start(qemu, &cores, &job.out.join("cores"))?;
+            let origin = Origin {
+                backend: "qemu",
+                boards: options.boards.clone(),
+                counts_instructions: true,
+            };
+            (Fleet::Qemu(fleet), origin)
         }
-        _ => {
+        None => {
             let fleet = NativeFleet::start(&blocks, options.picture.profile)?;
-            (
-                Fleet::Native(fleet),
-                Origin {
-                    backend: "native",
-                    board: None,
-                    counts_instructions: false,
-                },
-            )
+            let origin = Origin {
+                backend: "native",
+                boards: Vec::new(),
+                counts_instructions: false,
+            };
+            (Fleet::Native(fleet), origin)
         }
     };
     job.collect(&session, &socket, fleet, origin, start, interrupted)
 }
 
 impl Job {
-    /// The image, where there is a toolchain for it.
-    fn build(&self, tools: &Tools) -> Result<Option<Image>, JobError> {
+    /// The image of each board, where there is a toolchain for it.
+    fn build(&self, tools: &Tools, boards: &[Board]) -> Result<Vec<(Board, PathBuf)>, JobError> {
         let Some(toolchain) = &tools.firmware else {
-            return Ok(None);
+            return Ok(Vec::new());
         };
         let recipe = self.recipe();
-        eprintln!(
-            "building the image for {} with {}",
-            self.scene.name,
-            recipe.describe()
-        );
-        let image = firmware::build(toolchain, &recipe)?;
-        eprintln!("{}", image.size);
-        Ok(Some(image))
+        let build = |&board: &Board| {
+            eprintln!(
+                "building the image for {} on {board} with {}",
+                self.scene.name,
+                recipe.describe()
+            );
+            let image = firmware::build(toolchain, board, &recipe)?;
+            eprintln!("{}", image.size);
+            Ok((board, image.elf))
+        };
+        boards.iter().map(build).collect()
     }
 }
 

@@ -9,7 +9,7 @@ use tracer::unit::{Plan, Termination};
 use wire::boot::PixelOrder;
 
 use crate::arithmetic::Arithmetic;
-use crate::firmware::Board;
+use crate::board::Board;
 
 /// Samples per pixel in one unit, unless the whole picture has fewer.
 const SAMPLES_PER_UNIT: u32 = 64;
@@ -63,9 +63,15 @@ pub struct RenderOptions {
     /// The picture.
     #[command(flatten)]
     pub picture: PictureOptions,
-    /// Board of the cores
-    #[arg(long, value_enum, default_value_t)]
-    pub board: Board,
+    /// Board of the cores; several boards, as in `versatilepb,mps2-an385`, take turns
+    #[arg(
+        long = "board",
+        value_name = "BOARD,..",
+        value_enum,
+        value_delimiter = ',',
+        default_value = "versatilepb"
+    )]
+    pub boards: Vec<Board>,
     /// Cores in QEMU, or as threads of this host
     #[arg(long, value_enum, default_value_t)]
     pub backend: Backend,
@@ -266,8 +272,8 @@ mod tests {
         let options = parse(&[]).expect("no flag is needed");
         let picture = &options.picture;
         assert_eq!(
-            (options.backend, options.board, options.port),
-            (Backend::Qemu, Board::Versatilepb, None)
+            (options.backend, &options.boards[..], options.port),
+            (Backend::Qemu, &[Board::Versatilepb][..], None)
         );
         assert_eq!(
             (picture.cores, picture.profile, picture.pixels),
@@ -296,7 +302,7 @@ mod tests {
             "--cores",
             "2",
             "--board",
-            "versatilepb",
+            "versatilepb,mps2-an385",
             "--backend",
             "native",
             "--profile",
@@ -319,6 +325,7 @@ mod tests {
         ])
         .expect("these are all good");
         let plan = options.picture.plan();
+        assert_eq!(options.boards, Board::ALL);
         assert_eq!((plan.spp, plan.samples_per_unit, plan.epsilon), (1024, 64, 6554));
         assert_eq!((plan.termination, plan.seed), (Termination::Depth(7), u64::MAX));
         assert_eq!(options.picture.reference, Some(Reference::None));
@@ -345,6 +352,7 @@ mod tests {
             (["--size", "65535x65535"], "at most 16777216 pixels"),
             (["--cores", "0"], "1..=1024"),
             (["--profile", "fancy"], "paper, precise"),
+            (["--board", "versatilepb,z80"], "versatilepb, mps2-an385"),
             (["--epsilon", "-0.1"], "from 0 to 100"),
             (["--epsilon", "32768"], "from 0 to 100"),
             (["--epsilon", "NaN"], "from 0 to 100"),

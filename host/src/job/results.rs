@@ -11,9 +11,9 @@ use tracer::unit::Termination;
 use super::options::{Pixels, Reference};
 use super::{Job, JobError, Origin};
 use crate::arithmetic::Arithmetic;
+use crate::board::INSTRUCTIONS_PER_TICK;
 use crate::collector::{Collection, End};
 use crate::compare::{Comparison, compare};
-use crate::firmware::INSTRUCTIONS_PER_TICK;
 use crate::picture::Estimate;
 use crate::reference::{self, cache};
 use crate::report::{self, Cost, LockstepError, Report};
@@ -160,7 +160,7 @@ impl Results<'_> {
             size: [plan.width, plan.height],
             spp: plan.spp,
             cores: options.cores.into(),
-            board: self.origin.board.map(str::to_owned),
+            board: self.origin.boards(),
             backend: self.origin.backend.to_owned(),
             profile: options.profile.name().to_owned(),
             termination: options.termination.to_string(),

@@ -113,18 +113,6 @@ fn a_taken_port_is_refused() {
 }
 
 #[test]
-fn a_board_that_is_not_built_yet_is_refused() {
-    let out = tempfile::tempdir().expect("a folder");
-    let refused = render(&options(out.path(), &["--board", "mps2-an385"]), &RUNNING);
-    assert!(
-        refused
-            .expect_err("not yet")
-            .to_string()
-            .contains("mps2-an385 is not built yet")
-    );
-}
-
-#[test]
 fn a_reference_of_another_size_is_refused_before_the_render() {
     let small = tempfile::tempdir().expect("a folder");
     render(&options(small.path(), &["--size", "8x6"]), &RUNNING).expect("a picture");

@@ -10,7 +10,8 @@ use rayon::prelude::*;
 
 use super::reach::{Code, Reach};
 use super::{Entry, entries};
-use crate::firmware::{self, FirmwareError, INSTRUCTIONS_PER_TICK};
+use crate::board::{Board, INSTRUCTIONS_PER_TICK};
+use crate::firmware::{self, FirmwareError};
 use crate::fleet;
 use crate::setup::Toolchain;
 
@@ -85,7 +86,7 @@ pub enum BenchError {
 /// Builds and runs the images of all groups, and compares every transcript with the host's.
 pub fn measure(toolchain: &Toolchain, qemu: &Path) -> Result<Vec<Measurement>, BenchError> {
     let names = Group::ALL.map(image_name);
-    let images = firmware::build_examples(toolchain, &names)?;
+    let images = firmware::build_examples(toolchain, Board::Versatilepb, &names)?;
     let pairs: Vec<(Group, PathBuf)> = Group::ALL.into_iter().zip(images).collect();
     let groups: Vec<Vec<Measurement>> = pairs
         .into_par_iter()
@@ -100,7 +101,7 @@ pub fn image_name(group: Group) -> String {
 }
 
 fn measure_group(qemu: &Path, group: Group, elf: &Path) -> Result<Vec<Measurement>, BenchError> {
-    let output = fleet::run_to_end(qemu, elf).map_err(|cause| BenchError::Start {
+    let output = fleet::run_to_end(qemu, Board::Versatilepb, elf).map_err(|cause| BenchError::Start {
         program: qemu.to_owned(),
         cause,
     })?;

@@ -5,6 +5,7 @@
 //! figures to the bit.
 
 use std::any::{Any, TypeId};
+use std::iter;
 use std::ops::Range;
 
 use fixedmath::random::Lcg64;
@@ -226,24 +227,24 @@ struct Chunk<O: Operation> {
 
 impl<O: Operation> Chunk<O> {
     fn of(source: Source) -> Self {
-        let cases = 0..TASK;
         let stream = |kind: u64, task: u32| Lcg64::new(kind << 32 | u64::from(task));
-        let inputs: Vec<Option<O::Input>> = match source {
-            Source::Bits(task) => cases.map(|case| O::Input::of_bits(task << 16 | case)).collect(),
+        let accepted = |&input: &O::Input| O::accepts(input);
+        let inputs: Vec<O::Input> = match source {
+            Source::Bits(task) => (0..TASK)
+                .filter_map(|case| O::Input::of_bits(task << 16 | case))
+                .filter(accepted)
+                .collect(),
             Source::Drawn(task) => {
                 let mut random = stream(1, task);
-                cases.map(|_| Some(O::Input::draw(&mut random))).collect()
+                let drawn = iter::repeat_with(|| O::Input::draw(&mut random));
+                drawn.filter(accepted).take(TASK as usize).collect()
             }
             Source::Hard(task) => {
                 let mut random = stream(2, task);
-                cases.map(|_| Some(O::hard(&mut random))).collect()
+                let hard = iter::repeat_with(|| O::hard(&mut random));
+                hard.filter(accepted).take(TASK as usize).collect()
             }
         };
-        let inputs: Vec<O::Input> = inputs
-            .into_iter()
-            .flatten()
-            .filter(|&input| O::accepts(input))
-            .collect();
         let truths = truth::oracle(O::FUNCTION)
             .map(|oracle| inputs.iter().map(|input| truth_about(oracle, input)).collect());
         Self {

@@ -1,0 +1,150 @@
+//! The boards that the firmware exists for, and all that the host has to know of each.
+//!
+//! A board is a crate of its name in `firmware/`, an image format, and a machine of QEMU's. Whoever adds one adds it here;
+//! `docs/porting.md` says what else.
+
+use std::ffi::OsString;
+use std::ops::Range;
+use std::path::Path;
+
+/// Usable bytes of instruction memory: code, constants and first values.
+pub const ITCM_BUDGET: u64 = 0x7F00;
+/// Usable bytes of data memory: boot block, data and stacks.
+pub const DTCM_BUDGET: u64 = 0xF800;
+
+/// Instructions in a tick of the cores' clocks of 24 MHz, where an instruction is a nanosecond.
+pub const INSTRUCTIONS_PER_TICK: f64 = 1000.0 / 24.0;
+
+/// A board the firmware exists for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, clap::ValueEnum)]
+pub enum Board {
+    /// ARMv5TE, an ARM946E-S on QEMU.
+    #[default]
+    Versatilepb,
+    /// Cortex-M3 on QEMU.
+    #[value(name = "mps2-an385")]
+    Mps2An385,
+}
+
+/// What tells a board from another.
+struct Traits {
+    name: &'static str,
+    target: &'static str,
+    itcm: Range<u64>,
+    dtcm: Range<u64>,
+    machine: &'static [&'static str],
+    card: &'static str,
+}
+
+const VERSATILEPB: Traits = Traits {
+    name: "versatilepb",
+    target: "armv5te-none-eabi",
+    itcm: 0..0x8000,
+    dtcm: 0x0040_0000..0x0041_0000,
+    machine: &[
+        "-M",
+        "versatilepb",
+        "-cpu",
+        "arm946",
+        "-m",
+        "64",
+        // Of the board's sound chip, which would otherwise complain on the console.
+        "-audiodev",
+        "none,id=a",
+        "-global",
+        "pl041.audiodev=a",
+    ],
+    card: "smc91c111",
+};
+
+const MPS2_AN385: Traits = Traits {
+    name: "mps2-an385",
+    target: "thumbv7m-none-eabi",
+    itcm: 0..0x8000,
+    dtcm: 0x2000_0000..0x2001_0000,
+    machine: &["-M", "mps2-an385"],
+    card: "lan9118",
+};
+
+impl Board {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::Versatilepb, Self::Mps2An385];
+
+    const fn traits(self) -> &'static Traits {
+        match self {
+            Self::Versatilepb => &VERSATILEPB,
+            Self::Mps2An385 => &MPS2_AN385,
+        }
+    }
+
+    /// The name used by `--board` and in reports; the board's crate has it, too.
+    pub const fn name(self) -> &'static str {
+        self.traits().name
+    }
+
+    /// The compiler's name for its processor.
+    pub const fn target(self) -> &'static str {
+        self.traits().target
+    }
+
+    /// The addresses of instruction memory.
+    pub fn itcm(self) -> Range<u64> {
+        self.traits().itcm.clone()
+    }
+
+    /// The addresses of data memory, where the boot block comes first.
+    pub fn dtcm(self) -> Range<u64> {
+        self.traits().dtcm.clone()
+    }
+
+    /// The arguments that make QEMU this board, running `elf` with the boot block in file `boot`.
+    ///
+    /// One instruction is one virtual nanosecond (`-icount shift=0`): the core's clock counts instructions.
+    pub fn command_line(self, elf: &Path, boot: Option<&Path>) -> Vec<OsString> {
+        let Traits { machine, card, .. } = self.traits();
+        let card = format!("user,id=net,model={card}");
+        let shared = ["-nographic", "-semihosting", "-icount", "shift=0", "-nic", &card];
+        let words = machine.iter().chain(&shared).map(OsString::from);
+        let mut arguments: Vec<OsString> = words.collect();
+        if let Some(boot) = boot {
+            let (address, file) = (self.traits().dtcm.start, escaped(boot));
+            arguments.push("-device".into());
+            arguments.push(format!("loader,addr={address:#x},file={file},force-raw=on").into());
+        }
+        arguments.extend(["-kernel".into(), elf.into()]);
+        arguments
+    }
+}
+
+/// A path as the value of one of QEMU's options, which ends at a comma unless that is doubled.
+fn escaped(path: &Path) -> String {
+    path.display().to_string().replace(',', ",,")
+}
+
+impl std::fmt::Display for Board {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_comma_in_a_path_is_doubled_for_qemu() {
+        let words =
+            Board::Versatilepb.command_line(Path::new("image.elf"), Some(Path::new("a,b/core-0.boot")));
+        let loader = OsString::from("loader,addr=0x400000,file=a,,b/core-0.boot,force-raw=on");
+        assert!(words.contains(&loader), "{words:?}");
+    }
+
+    #[test]
+    fn every_board_names_its_machine_its_card_and_its_image() {
+        for board in Board::ALL {
+            let words = board.command_line(Path::new("image.elf"), None);
+            assert!(words.contains(&OsString::from(board.name())), "{words:?}");
+            assert_eq!(words.last(), Some(&OsString::from("image.elf")));
+        }
+    }
+}
