@@ -1,87 +1,18 @@
-//! Chooses what the image can do, and hands the linker its scripts.
-//!
-//! An image holds only what its scene needs, and that is said in two environment variables rather than in cargo features, of
-//! which every combination would be a different crate graph:
-//!
-//! - `TRACER_PROFILE`: `precise` (the default) or `paper`;
-//! - `TRACER_NEEDS`: a comma-separated list of `diffuse`, `mirror`, `glass` and `roulette`; all of them by default.
+//! Hands the linker its scripts: `link.x` is aarch32-rt's, and includes `memory.x`.
 
-use std::path::Path;
-use std::{env, fs};
-
-const NEEDS: [&str; 4] = ["diffuse", "mirror", "glass", "roulette"];
+use std::env;
 
 fn main() {
-    let manifest = env::var("CARGO_MANIFEST_DIR").expect("cargo sets CARGO_MANIFEST_DIR");
-    let out = env::var("OUT_DIR").expect("cargo sets OUT_DIR");
-    link(&manifest);
-
-    println!("cargo::rerun-if-env-changed=TRACER_PROFILE");
-    println!("cargo::rerun-if-env-changed=TRACER_NEEDS");
-    let image = profile().and_then(|profile| Ok(image(profile, &needs()?)));
-    match image {
-        Ok(image) => fs::write(Path::new(&out).join("image.rs"), image).expect("OUT_DIR is writable"),
-        // Cargo shows this as an error and ends the build.
-        Err(message) => println!("cargo::error={message}"),
-    }
-}
-
-/// `link.x` is aarch32-rt's, and includes `memory.x`.
-fn link(manifest: &str) {
-    let (firmware, root) = (format!("{manifest}/.."), format!("{manifest}/../.."));
-    for folder in [&firmware, &root] {
+    let board = env::var("CARGO_MANIFEST_DIR").expect("cargo sets CARGO_MANIFEST_DIR");
+    let firmware = format!("{board}/..");
+    for folder in [&firmware, &board] {
         println!("cargo::rustc-link-search={folder}");
     }
-    for script in [format!("{firmware}/no_float.x"), format!("{root}/memory.x")] {
+    for script in [format!("{firmware}/no_float.x"), format!("{board}/memory.x")] {
         println!("cargo::rerun-if-changed={script}");
     }
     println!("cargo::rustc-link-arg=-Tlink.x");
     println!("cargo::rustc-link-arg=-Tno_float.x");
     // Debug information of code that was left out points to address 0 by default, which is where our code is.
     println!("cargo::rustc-link-arg=-zdead-reloc-in-nonalloc=.debug_*=0xffffffff");
-}
-
-fn profile() -> Result<&'static str, String> {
-    match env::var("TRACER_PROFILE").as_deref() {
-        Err(_) | Ok("precise") => Ok("Precise"),
-        Ok("paper") => Ok("Paper"),
-        Ok(other) => Err(format!(
-            "TRACER_PROFILE is `{other}`; it must be `precise` or `paper`"
-        )),
-    }
-}
-
-fn needs() -> Result<Vec<String>, String> {
-    let Ok(list) = env::var("TRACER_NEEDS") else {
-        return Ok(NEEDS.map(String::from).to_vec());
-    };
-    let words: Vec<String> = list
-        .split(',')
-        .map(str::trim)
-        .filter(|word| !word.is_empty())
-        .map(String::from)
-        .collect();
-    match words.iter().find(|word| !NEEDS.contains(&word.as_str())) {
-        None => Ok(words),
-        Some(word) => Err(format!(
-            "TRACER_NEEDS has the word `{word}`; it must be a comma-separated list of {}",
-            NEEDS.join(", ")
-        )),
-    }
-}
-
-fn image(profile: &str, needs: &[String]) -> String {
-    let mut image = format!(
-        "/// The arithmetic this image was built with.\n\
-         pub type ImageProfile = tracer::profile::{profile};\n\n\
-         /// What this image's scene needs of the tracer.\n\
-         #[derive(Clone, Copy, Debug)]\n\
-         pub enum ImageNeeds {{}}\n\n\
-         impl tracer::scene::Needs for ImageNeeds {{\n"
-    );
-    for need in NEEDS {
-        let needed = needs.iter().any(|word| word == need);
-        image += &format!("    const {}: bool = {needed};\n", need.to_uppercase());
-    }
-    image + "}\n"
 }

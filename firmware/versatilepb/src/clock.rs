@@ -2,7 +2,7 @@
 
 use node::Clock;
 
-use crate::registers::Register;
+use runtime::registers::Register;
 
 // SAFETY: SYS_24MHZ, a read-only 32-bit counter.
 const COUNTER: Register<u32> = unsafe { Register::new(0x1000_005C) };

@@ -1,6 +1,6 @@
 //! Messages, over the first PL011 UART.
 
-use crate::registers::Register;
+use runtime::registers::Register;
 
 // SAFETY: the PL011's data and flag registers, 32 bits wide, without DMA.
 const DATA: Register<u32> = unsafe { Register::new(0x101F_1000) };

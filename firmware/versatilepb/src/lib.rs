@@ -1,30 +1,54 @@
 //! The ARMv5TE board: QEMU's `versatilepb` with an ARM946E-S, which has the memory map of a SpiNNaker core.
 //!
-//! Registers live here, and all `unsafe` of the firmware does, in small rooms:
+//! Only what differs from other boards is here, in small rooms:
 //!
 //! | module           | what it touches                                    |
 //! | ---------------- | -------------------------------------------------- |
-//! | [`registers`]    | volatile access; every device below is made of it  |
 //! | [`console`]      | PL011, for messages                                |
 //! | [`clock`]        | the 24 MHz counter                                 |
 //! | [`rest`]         | wait-for-interrupt, with a timer as alarm          |
 //! | [`smc91c111`]    | the Ethernet controller                            |
-//! | [`memory`]       | boot block and stack, as the linker placed them    |
 //! | [`semihosting`]  | the way out, with an exit code                     |
 //! | [`fault`]        | panics and processor exceptions                    |
 //!
-//! Start-up code, vectors and the sections' layout are `aarch32-rt`'s.
+//! Start-up code, vectors and the sections' layout are `aarch32-rt`'s; `memory.x` says where everything lies.
 #![no_std]
 
 pub mod clock;
 pub mod console;
 pub mod fault;
-pub mod image;
-pub mod memory;
-pub mod registers;
 pub mod rest;
 pub mod semihosting;
 pub mod smc91c111;
 
-/// The name HELLO gives.
-pub const BOARD: wire::Name = wire::Name::new("versatilepb");
+pub use aarch32_rt::entry;
+
+use runtime::{Board, Exit};
+use wire::Name;
+
+/// A core of this board.
+#[derive(Clone, Copy, Debug)]
+pub enum Core {}
+
+impl Board for Core {
+    const NAME: Name = Name::new("versatilepb");
+    const NO_CONTROLLER: &'static str = "no SMC91C111 answers: start QEMU with -nic user,model=smc91c111";
+    type Controller = smc91c111::Smc91c111;
+    type Clock = clock::Counter;
+
+    fn controller(mac: [u8; 6]) -> Option<Self::Controller> {
+        smc91c111::Smc91c111::start(mac)
+    }
+
+    fn clock() -> Self::Clock {
+        clock::Counter
+    }
+
+    fn say(line: &str) {
+        console::line(line);
+    }
+
+    fn exit(code: Exit) -> ! {
+        semihosting::exit(code)
+    }
+}

@@ -2,7 +2,7 @@
 //!
 //! Interrupts stay masked. A pending one ends wait-for-interrupt all the same, and nobody has to handle it.
 
-use crate::registers::Register;
+use runtime::registers::Register;
 
 // SAFETY: registers of the PL190 interrupt controller, of the board's secondary controller and of the first SP804 timer, all 32
 // bits wide, without DMA.

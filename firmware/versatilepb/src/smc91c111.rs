@@ -17,8 +17,8 @@
 use node::SendError;
 use node::ethernet::Frames;
 
-use crate::registers::Register;
 use crate::rest;
+use runtime::registers::Register;
 
 const BASE: usize = 0x1001_0000;
 

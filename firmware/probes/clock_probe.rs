@@ -2,11 +2,9 @@
 #![no_std]
 #![no_main]
 
+use board::Core;
 use node::{Clock, Words};
-use versatilepb::clock::Counter;
-use versatilepb::console;
-use versatilepb::fault::die;
-use versatilepb::semihosting::{Exit, exit};
+use runtime::{Board, Exit, die};
 
 /// Rounds of two instructions: 24 million in all, which are 576,000 ticks.
 const ROUNDS: u32 = 12_000_000;
@@ -14,19 +12,20 @@ const EXPECTED: u32 = ROUNDS * 2 / 1000 * 24;
 /// Reading the clock twice takes some instructions, and it counts whole ticks.
 const TOLERANCE: u32 = 2;
 
-#[aarch32_rt::entry]
+#[board::entry]
 fn start() -> ! {
-    let before = Counter.ticks();
+    let mut clock = Core::clock();
+    let before = clock.ticks();
     // SAFETY: counts a register down, and changes nothing but that and the flags.
     unsafe {
         core::arch::asm!("2: subs {0}, {0}, #1", "bne 2b", inout(reg) ROUNDS => _, options(nomem, nostack))
     };
-    let ticks = Counter.ticks().wrapping_sub(before);
+    let ticks = clock.ticks().wrapping_sub(before);
     let mut words = Words::of("ticks: ");
     words.decimal(ticks).and(", expected: ").decimal(EXPECTED);
     if ticks.abs_diff(EXPECTED) > TOLERANCE {
-        die(&words, Exit::Fault);
+        die::<Core>(&words, Exit::Fault);
     }
-    console::line(words.as_str());
-    exit(Exit::Done)
+    Core::say(words.as_str());
+    Core::exit(Exit::Done)
 }

@@ -1,18 +1,18 @@
 //! What the price list's images share: the core as a bench, and a console line a row.
 
+use board::Core;
 use node::{Clock, Words};
 use operations::price::{Bench, called, price};
 use operations::transcript::transcript;
 use operations::{Group, Variant, Visitor};
-use versatilepb::clock::Counter;
-use versatilepb::console;
-use versatilepb::semihosting::{Exit, exit};
+use runtime::{Board, Exit};
 
-struct Core;
+/// The core that measures itself.
+struct Itself(<Core as Board>::Clock);
 
-impl Bench for Core {
+impl Bench for Itself {
     fn ticks(&mut self) -> u32 {
-        Counter.ticks()
+        self.0.ticks()
     }
 
     #[inline(always)]
@@ -34,13 +34,13 @@ struct Printer {
 pub(crate) fn print(group: Group) -> ! {
     let cases = group.transcript_cases();
     group.show(&mut Printer { row: 0, cases });
-    exit(Exit::Done)
+    Core::exit(Exit::Done)
 }
 
 impl Visitor for Printer {
     #[inline(never)]
     fn visit<V: Variant>(&mut self) {
-        let price = price::<V>(&mut Core);
+        let price = price::<V>(&mut Itself(Core::clock()));
         let hash = transcript::<V>(self.cases);
         let mut line = Words::of("row");
         for word in [
@@ -55,7 +55,7 @@ impl Visitor for Printer {
         ] {
             line.and(" ").hexadecimal(word);
         }
-        console::line(line.as_str());
+        Core::say(line.as_str());
         self.row += 1;
     }
 }

@@ -12,7 +12,7 @@ core::arch::global_asm!(
     ".set __floating_point_is_measured, 1"
 );
 
-#[aarch32_rt::entry]
+#[board::entry]
 fn start() -> ! {
     bench::print(Group::FixedPoint)
 }

@@ -6,11 +6,12 @@
 
 use core::hint::black_box;
 
-use versatilepb::semihosting::{Exit, exit};
+use board::Core;
+use runtime::{Board, Exit};
 
-#[aarch32_rt::entry]
+#[board::entry]
 fn start() -> ! {
     let product = black_box(1.5f32) * black_box(2.0f32);
     black_box(product);
-    exit(Exit::Done)
+    Core::exit(Exit::Done)
 }

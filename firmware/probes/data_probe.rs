@@ -6,13 +6,14 @@
 
 use core::hint::black_box;
 
-use versatilepb::semihosting::{Exit, exit};
+use board::Core;
+use runtime::{Board, Exit};
 
 /// Three quarters of data memory: it fits by itself, but not with the stacks.
 static mut TOO_MUCH: [u32; 12 * 1024] = [0; 12 * 1024];
 
-#[aarch32_rt::entry]
+#[board::entry]
 fn start() -> ! {
     black_box(&raw mut TOO_MUCH);
-    exit(Exit::Done)
+    Core::exit(Exit::Done)
 }

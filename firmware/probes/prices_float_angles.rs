@@ -1,4 +1,4 @@
-//! Prices and transcripts of single precision in software.
+//! Prices and transcripts of functions of angles in single precision.
 #![no_std]
 #![no_main]
 
@@ -12,7 +12,7 @@ core::arch::global_asm!(
     ".set __floating_point_is_measured, 1"
 );
 
-#[aarch32_rt::entry]
+#[board::entry]
 fn start() -> ! {
-    bench::print(Group::SoftFloat)
+    bench::print(Group::FloatAngles)
 }

@@ -2,11 +2,12 @@
 #![no_std]
 #![no_main]
 
-use versatilepb::semihosting::{Exit, exit};
+use board::Core;
+use runtime::{Board, Exit};
 
-#[aarch32_rt::entry]
+#[board::entry]
 fn start() -> ! {
     // SAFETY: the instruction is defined to be undefined; the handler never returns.
     unsafe { core::arch::asm!("udf #0") };
-    exit(Exit::Done)
+    Core::exit(Exit::Done)
 }

@@ -1,4 +1,7 @@
 //! What the linker and the loader have put into data memory: the boot block and the stack.
+//!
+//! A board's `memory.x` says where: it defines the symbols `__boot_block`, `__boot_block_size`, `_work_stack_low_end` and
+//! `_work_stack_high_end`.
 
 use core::ops::Range;
 
@@ -8,9 +11,9 @@ unsafe extern "C" {
     /// Start and size of the boot block's memory, of which only the addresses mean something: see `memory.x`.
     static __boot_block: u8;
     static __boot_block_size: u8;
-    /// Lowest and highest end of the SYS stack, likewise: see aarch32-rt's `link.x`.
-    static _sys_stack_low_end: u32;
-    static _sys_stack_high_end: u32;
+    /// Lowest and highest end of the stack that all work is done on, likewise.
+    static _work_stack_low_end: u32;
+    static _work_stack_high_end: u32;
 }
 
 /// What unused stack looks like: no address, no small number, and odd.
@@ -27,7 +30,7 @@ pub fn boot_block() -> &'static [u8] {
 
 /// The stack that all work is done on, lowest address first.
 fn stack() -> Range<*mut u32> {
-    let (start, end) = (&raw const _sys_stack_low_end, &raw const _sys_stack_high_end);
+    let (start, end) = (&raw const _work_stack_low_end, &raw const _work_stack_high_end);
     start.cast_mut()..end.cast_mut()
 }
 

@@ -4,13 +4,14 @@
 
 use core::hint::black_box;
 
-use versatilepb::semihosting::{Exit, exit};
+use board::Core;
+use runtime::{Board, Exit};
 
 /// All of code memory, so that nothing is left for code.
 static TOO_MUCH: [u32; 8 * 1024] = [7; 8 * 1024];
 
-#[aarch32_rt::entry]
+#[board::entry]
 fn start() -> ! {
     black_box(&TOO_MUCH);
-    exit(Exit::Done)
+    Core::exit(Exit::Done)
 }

@@ -4,10 +4,11 @@
 
 use core::hint::black_box;
 
-use versatilepb::semihosting::{Exit, exit};
+use board::Core;
+use runtime::{Board, Exit};
 
-#[aarch32_rt::entry]
+#[board::entry]
 fn start() -> ! {
     black_box(1u32 / black_box(0));
-    exit(Exit::Done)
+    Core::exit(Exit::Done)
 }

@@ -6,7 +6,7 @@ mod bench;
 
 use operations::Group;
 
-#[aarch32_rt::entry]
+#[board::entry]
 fn start() -> ! {
     bench::print(Group::Roots)
 }
