@@ -29,6 +29,7 @@ pub enum Board {
 /// What tells a board from another.
 struct Traits {
     name: &'static str,
+    processor: &'static str,
     target: &'static str,
     itcm: Range<u64>,
     dtcm: Range<u64>,
@@ -38,6 +39,7 @@ struct Traits {
 
 const VERSATILEPB: Traits = Traits {
     name: "versatilepb",
+    processor: "an ARMv5TE core",
     target: "armv5te-none-eabi",
     itcm: 0..0x8000,
     dtcm: 0x0040_0000..0x0041_0000,
@@ -59,6 +61,7 @@ const VERSATILEPB: Traits = Traits {
 
 const MPS2_AN385: Traits = Traits {
     name: "mps2-an385",
+    processor: "a Cortex-M3",
     target: "thumbv7m-none-eabi",
     itcm: 0..0x8000,
     dtcm: 0x2000_0000..0x2001_0000,
@@ -82,6 +85,11 @@ impl Board {
         self.traits().name
     }
 
+    /// Its processor, for people.
+    pub const fn processor(self) -> &'static str {
+        self.traits().processor
+    }
+
     /// The compiler's name for its processor.
     pub const fn target(self) -> &'static str {
         self.traits().target
@@ -101,8 +109,19 @@ impl Board {
     ///
     /// One instruction is one virtual nanosecond (`-icount shift=0`): the core's clock counts instructions.
     pub fn command_line(self, elf: &Path, boot: Option<&Path>) -> Vec<OsString> {
+        self.command_line_in("user", elf, boot)
+    }
+
+    /// As [`Board::command_line`], but with one peer instead of a network: whatever frame the core sends arrives as a datagram at
+    /// the UDP port `peer` of this host, and whatever arrives at the port `core` is a frame for it.
+    pub fn command_line_with_peer(self, elf: &Path, core: u16, peer: u16) -> Vec<OsString> {
+        let network = format!("socket,udp=127.0.0.1:{peer},localaddr=127.0.0.1:{core}");
+        self.command_line_in(&network, elf, None)
+    }
+
+    fn command_line_in(self, network: &str, elf: &Path, boot: Option<&Path>) -> Vec<OsString> {
         let Traits { machine, card, .. } = self.traits();
-        let card = format!("user,id=net,model={card}");
+        let card = format!("{network},id=net,model={card}");
         let shared = ["-nographic", "-semihosting", "-icount", "shift=0", "-nic", &card];
         let words = machine.iter().chain(&shared).map(OsString::from);
         let mut arguments: Vec<OsString> = words.collect();
@@ -119,6 +138,12 @@ impl Board {
 /// A path as the value of one of QEMU's options, which ends at a comma unless that is doubled.
 fn escaped(path: &Path) -> String {
     path.display().to_string().replace(',', ",,")
+}
+
+impl serde::Serialize for Board {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.name())
+    }
 }
 
 impl std::fmt::Display for Board {

@@ -283,10 +283,9 @@ pub fn target_folder() -> PathBuf {
 pub fn board_of(elf: &[u8]) -> Result<Board, String> {
     let file = object::File::parse(elf).map_err(|error| error.to_string())?;
     let boot_block = file.symbol_by_name("__boot_block").map(|symbol| symbol.address());
-    let boards = Board::ALL.into_iter();
+    let mut boards = Board::ALL.into_iter();
     boards
-        .filter(|board| Some(board.dtcm().start) == boot_block)
-        .next()
+        .find(|board| Some(board.dtcm().start) == boot_block)
         .ok_or_else(|| "it has no boot block where a board of ours looks for one".to_owned())
 }
 

@@ -6,6 +6,7 @@ use host::direct;
 use host::film::Film;
 use host::picture::Estimate;
 use host::scene::{Scene, compile};
+use host::setup::{self, Install, Toolchain, Wanted};
 use tracer::profile::Profile;
 use tracer::unit::{Plan, Termination};
 
@@ -51,4 +52,30 @@ pub fn film<P: Profile>(scene: &Scene, plan: &Plan) -> Film {
 pub fn estimate<P: Profile>(scene: &Scene, plan: &Plan) -> (Estimate, Estimate) {
     let blob = compile(scene, plan.width, plan.height).blob;
     direct::estimate::<P>(&blob, plan).expect("a compiled scene is decoded")
+}
+
+/// The firmware's compiler, which must be there.
+///
+/// # Panics
+/// If it is missing.
+pub fn toolchain() -> Toolchain {
+    let wanted = Wanted {
+        firmware: true,
+        ..Wanted::default()
+    };
+    let tools = setup::ensure(wanted, Install::Forbidden).unwrap_or_else(|error| panic!("{error}"));
+    tools.firmware.expect("set-up gives what is wanted")
+}
+
+/// The emulator, which must be there.
+///
+/// # Panics
+/// If it is missing.
+pub fn qemu() -> PathBuf {
+    let wanted = Wanted {
+        qemu: true,
+        ..Wanted::default()
+    };
+    let tools = setup::ensure(wanted, Install::Forbidden).unwrap_or_else(|error| panic!("{error}"));
+    tools.qemu.expect("set-up gives what is wanted")
 }

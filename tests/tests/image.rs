@@ -1,14 +1,14 @@
 //! Firmware images: what must not link does not, what goes wrong on a core is said, and every image fits.
 
-use std::process::{Command, Output};
+use std::process::Output;
 
 use host::arithmetic::Arithmetic;
-use host::board::Board;
+use host::board::{Board, DTCM_BUDGET, ITCM_BUDGET};
 use host::firmware::{self, Recipe, build};
+use host::fleet::run_to_end;
 use host::scene::SceneNeeds;
-use host::setup::{self, Install, Toolchain, Wanted};
+use whole_system::{qemu, toolchain};
 
-const BOARD: Board = Board::Versatilepb;
 const ALL: SceneNeeds = SceneNeeds {
     diffuse: true,
     mirror: true,
@@ -23,101 +23,94 @@ fn recipe(profile: Arithmetic, needs: SceneNeeds) -> Recipe {
     }
 }
 
-fn toolchain() -> Toolchain {
-    let wanted = Wanted {
-        firmware: true,
-        ..Wanted::default()
-    };
-    setup::ensure(wanted, Install::Forbidden)
-        .unwrap()
-        .firmware
-        .unwrap()
-}
-
-/// Builds one of the board's examples, and says where its ELF is.
-fn example(name: &str) -> (Output, std::path::PathBuf) {
-    let mut command = firmware::cargo(&toolchain(), BOARD, "build", &recipe(Arithmetic::Precise, ALL));
+/// Builds one of a board's examples, and says where its ELF is.
+fn example(board: Board, name: &str) -> (Output, std::path::PathBuf) {
+    let mut command = firmware::cargo(&toolchain(), board, "build", &recipe(Arithmetic::Precise, ALL));
     let output = command.args(["--example", name]).output().unwrap();
-    (output, firmware::example(BOARD, name))
+    (output, firmware::example(board, name))
 }
 
-fn refused(name: &str) -> String {
-    let (output, _) = example(name);
-    assert!(!output.status.success(), "{name} was built");
+fn refused(board: Board, name: &str) -> String {
+    let (output, _) = example(board, name);
+    assert!(!output.status.success(), "{name} was built for {board}");
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
 /// Runs an example on a core: its exit code and what it said.
-fn run(name: &str) -> (Option<i32>, String) {
-    let (output, elf) = example(name);
+fn run(board: Board, name: &str) -> (Option<i32>, String) {
+    let (output, elf) = example(board, name);
     assert!(
         output.status.success(),
         "{}",
         String::from_utf8_lossy(&output.stderr)
     );
-    let wanted = Wanted {
-        qemu: true,
-        ..Wanted::default()
-    };
-    let qemu = setup::ensure(wanted, Install::Forbidden).unwrap().qemu.unwrap();
-    let output = Command::new(qemu)
-        .args(BOARD.command_line(&elf, None))
-        .output()
-        .unwrap();
+    let output = run_to_end(&qemu(), board, &elf).unwrap();
     let said = [output.stdout, output.stderr]
         .map(|bytes| String::from_utf8_lossy(&bytes).into_owned())
         .concat();
-    (output.status.code(), said)
+    (output.status.code(), format!("{board}: {said}"))
 }
 
 #[test]
 fn an_image_with_a_float_in_it_does_not_link() {
-    let text = refused("float_probe");
-    assert!(text.contains("float"), "{text}");
-    assert!(
-        text.contains("__aeabi_fmul") || text.contains("__mulsf3"),
-        "{text}"
-    );
+    for board in Board::ALL {
+        let text = refused(board, "float_probe");
+        assert!(text.contains("float"), "{text}");
+        assert!(
+            text.contains("__aeabi_fmul") || text.contains("__mulsf3"),
+            "{text}"
+        );
+    }
 }
 
 #[test]
 fn an_image_with_too_much_code_or_data_does_not_link() {
-    let text = refused("code_probe");
-    assert!(text.contains("ITCM") || text.contains("CODE"), "{text}");
-    let text = refused("data_probe");
-    assert!(text.contains("data and stacks do not fit"), "{text}");
+    for (board, region) in [(Board::Versatilepb, "CODE"), (Board::Mps2An385, "FLASH")] {
+        let text = refused(board, "code_probe");
+        assert!(text.contains("ITCM") || text.contains(region), "{text}");
+        let text = refused(board, "data_probe");
+        assert!(text.contains("data and stacks do not fit"), "{text}");
+    }
 }
 
 #[test]
 fn the_core_s_clock_counts_instructions() {
-    let (code, said) = run("clock_probe");
-    assert_eq!(code, Some(0), "{said}");
+    for board in Board::ALL {
+        let (code, said) = run(board, "clock_probe");
+        assert_eq!(code, Some(0), "{said}");
+    }
 }
 
 #[test]
 fn a_panic_and_a_fault_say_what_and_where_and_end_the_core() {
-    let (code, said) = run("panic_probe");
-    assert!(code.is_some_and(|code| code != 0), "{said}");
-    assert!(said.contains("panic_probe.rs"), "{said}");
-    let (code, said) = run("exception_probe");
-    assert!(code.is_some_and(|code| code != 0), "{said}");
-    assert!(said.contains("undefined"), "{said}");
+    for board in Board::ALL {
+        let (code, said) = run(board, "panic_probe");
+        assert_eq!(code, Some(3), "{said}");
+        assert!(said.contains("panic_probe.rs"), "{said}");
+        let (code, said) = run(board, "exception_probe");
+        assert_eq!(code, Some(4), "{said}");
+        assert!(said.contains("undefined instruction at 0x"), "{said}");
+    }
 }
 
 #[test]
 fn every_image_fits_and_holds_no_more_than_its_scene_needs() {
     let toolchain = toolchain();
-    for profile in Arithmetic::ALL {
-        let full = build(&toolchain, BOARD, &recipe(profile, ALL)).unwrap().size;
-        println!("{profile}: {full}");
+    let cases = Board::ALL
+        .into_iter()
+        .flat_map(|board| Arithmetic::ALL.map(|profile| (board, profile)));
+    for (board, profile) in cases {
+        let full = build(&toolchain, board, &recipe(profile, ALL)).unwrap().size;
+        println!("{board}, {profile}: {full}");
         assert!(full.float_symbols.is_empty());
+        assert!(full.itcm_bytes <= ITCM_BUDGET && full.dtcm_bytes + full.stack_bytes <= DTCM_BUDGET);
         let plain = SceneNeeds {
             mirror: false,
             glass: false,
             ..ALL
         };
-        let plain = build(&toolchain, BOARD, &recipe(profile, plain)).unwrap().size;
-        println!("{profile}, diffuse only: {plain}");
+        let plain = build(&toolchain, board, &recipe(profile, plain)).unwrap().size;
+        println!("{board}, {profile}, diffuse only: {plain}");
         assert!(
             plain.itcm_bytes + 500 < full.itcm_bytes,
             "a mirror and a dielectric are code"
@@ -130,7 +123,12 @@ fn every_image_fits_and_holds_no_more_than_its_scene_needs() {
 #[test]
 fn the_arithmetic_of_the_cornell_box_is_small() {
     const BUDGET: usize = 4096;
-    let image = build(&toolchain(), BOARD, &recipe(Arithmetic::Precise, ALL)).unwrap();
+    let image = build(
+        &toolchain(),
+        Board::Versatilepb,
+        &recipe(Arithmetic::Precise, ALL),
+    )
+    .unwrap();
     let loader = addr2line::Loader::new(&image.elf).unwrap();
     let is_arithmetic = |address: u64| {
         let mut frames = loader.find_frames(address).unwrap();

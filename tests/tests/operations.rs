@@ -3,7 +3,6 @@
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::PathBuf;
 use std::sync::OnceLock;
 
 use host::board::Board;
@@ -11,26 +10,15 @@ use host::operations::anchors::ANCHORS;
 use host::operations::bench::{Measurement, measure};
 use host::operations::table::table;
 use host::operations::{Row, reach, readme, with_errors};
-use host::setup::{self, Install, Toolchain, Wanted};
-use operations::Maker;
+use operations::{Group, Maker};
+use whole_system::{qemu, toolchain};
 
 /// Bytes that our tables may take together.
 const TABLES: u64 = 2048;
 
-fn tools() -> (Toolchain, PathBuf) {
-    let wanted = Wanted {
-        qemu: true,
-        firmware: true,
-        ..Wanted::default()
-    };
-    let tools = setup::ensure(wanted, Install::Forbidden).unwrap();
-    (tools.firmware.unwrap(), tools.qemu.unwrap())
-}
-
 /// Fails where a transcript on the core is not the host's.
 fn take() -> Vec<Measurement> {
-    let (toolchain, qemu) = tools();
-    measure(&toolchain, &qemu).unwrap_or_else(|error| panic!("{error}"))
+    measure(&toolchain(), &qemu(), Board::Versatilepb, &Group::ALL).unwrap_or_else(|error| panic!("{error}"))
 }
 
 fn list(measurements: &[Measurement]) -> Vec<Row> {

@@ -10,9 +10,9 @@ use host::arithmetic::Arithmetic;
 use host::board::Board;
 use host::firmware::{self, Recipe};
 use host::scene::SceneNeeds;
-use host::setup::{self, Install, Wanted};
 use serde_json::Value;
 use tempfile::TempDir;
+use whole_system::toolchain;
 
 /// A picture that takes an emulated core a moment.
 const SMALL: [&str; 6] = ["--size", "64x48", "--spp", "16", "--reference", "none"];
@@ -190,14 +190,6 @@ fn no_core_outlives_a_host_that_is_killed() {
 
 #[test]
 fn the_collector_takes_cores_that_are_started_elsewhere() {
-    let wanted = Wanted {
-        firmware: true,
-        ..Wanted::default()
-    };
-    let toolchain = setup::ensure(wanted, Install::Forbidden)
-        .expect("it is all there")
-        .firmware
-        .expect("a toolchain");
     let needs = SceneNeeds {
         diffuse: true,
         mirror: true,
@@ -208,7 +200,7 @@ fn the_collector_takes_cores_that_are_started_elsewhere() {
         needs,
         roulette: true,
     };
-    let image = firmware::build(&toolchain, Board::Versatilepb, &recipe).expect("an image");
+    let image = firmware::build(&toolchain(), Board::Versatilepb, &recipe).expect("an image");
     let elf = image.elf.to_str().expect("UTF-8");
     let out = tempfile::tempdir().expect("a folder");
 

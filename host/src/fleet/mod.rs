@@ -4,7 +4,7 @@ mod native;
 mod qemu;
 
 pub use native::NativeFleet;
-pub use qemu::{Core, QemuFleet, run_to_end};
+pub use qemu::{Core, QemuFleet, run_to_end, run_with_peer};
 
 /// Lines of a core's output that are kept for a report of its end.
 const LAST_LINES: usize = 5;

@@ -24,6 +24,14 @@ pub fn run_to_end(qemu: &Path, board: Board, elf: &Path) -> io::Result<Output> {
         .output()
 }
 
+/// As [`run_to_end`], with a peer instead of a network: see [`Board::command_line_with_peer`].
+pub fn run_with_peer(qemu: &Path, board: Board, elf: &Path, core: u16, peer: u16) -> io::Result<Output> {
+    bound_to_this_process(qemu)
+        .args(board.command_line_with_peer(elf, core, peer))
+        .stdin(Stdio::null())
+        .output()
+}
+
 /// A core to be started.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Core {

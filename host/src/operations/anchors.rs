@@ -2,6 +2,11 @@
 //!
 //! gcc 12 with `-O3 -mcpu=arm968e-s -marm`, QEMU 7.2, loop overhead subtracted; newlib and libgcc for single precision.
 
+use crate::board::Board;
+
+/// The board whose core they were measured on.
+pub const BOARD: Board = Board::Versatilepb;
+
 /// A quoted figure.
 #[derive(Clone, Copy, Debug)]
 pub struct Anchor {

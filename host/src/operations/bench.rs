@@ -20,6 +20,8 @@ use crate::setup::Toolchain;
 pub struct Measurement {
     /// The row.
     pub entry: Entry,
+    /// The board.
+    pub board: Board,
     /// Instructions in line.
     pub instructions: f64,
     /// Instructions as a called function.
@@ -83,14 +85,19 @@ pub enum BenchError {
     },
 }
 
-/// Builds and runs the images of all groups, and compares every transcript with the host's.
-pub fn measure(toolchain: &Toolchain, qemu: &Path) -> Result<Vec<Measurement>, BenchError> {
-    let names = Group::ALL.map(image_name);
-    let images = firmware::build_examples(toolchain, Board::Versatilepb, &names)?;
-    let pairs: Vec<(Group, PathBuf)> = Group::ALL.into_iter().zip(images).collect();
+/// Builds and runs a board's images of these groups, and compares every transcript with the host's.
+pub fn measure(
+    toolchain: &Toolchain,
+    qemu: &Path,
+    board: Board,
+    groups: &[Group],
+) -> Result<Vec<Measurement>, BenchError> {
+    let names: Vec<String> = groups.iter().map(|&group| image_name(group)).collect();
+    let images = firmware::build_examples(toolchain, board, &names)?;
+    let pairs: Vec<(Group, PathBuf)> = groups.iter().copied().zip(images).collect();
     let groups: Vec<Vec<Measurement>> = pairs
         .into_par_iter()
-        .map(|(group, elf)| measure_group(qemu, group, &elf))
+        .map(|(group, elf)| measure_group(qemu, board, group, &elf))
         .collect::<Result<_, _>>()?;
     Ok(groups.concat())
 }
@@ -100,8 +107,13 @@ pub fn image_name(group: Group) -> String {
     format!("prices_{}", group.name())
 }
 
-fn measure_group(qemu: &Path, group: Group, elf: &Path) -> Result<Vec<Measurement>, BenchError> {
-    let output = fleet::run_to_end(qemu, Board::Versatilepb, elf).map_err(|cause| BenchError::Start {
+fn measure_group(
+    qemu: &Path,
+    board: Board,
+    group: Group,
+    elf: &Path,
+) -> Result<Vec<Measurement>, BenchError> {
+    let output = fleet::run_to_end(qemu, board, elf).map_err(|cause| BenchError::Start {
         program: qemu.to_owned(),
         cause,
     })?;
@@ -130,6 +142,7 @@ fn measure_group(qemu: &Path, group: Group, elf: &Path) -> Result<Vec<Measuremen
         let reach = code.from(line.address.into()).ok_or_else(failed)?;
         Ok(Measurement {
             entry,
+            board,
             instructions: line.instructions(line.inline),
             called_instructions: line.instructions(line.called),
             reach,

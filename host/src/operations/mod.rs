@@ -25,6 +25,7 @@ use verify::{Depth, verify};
 use operations::{Format, Group, Maker, Operation, Variant, Visitor, transcript};
 use serde::Serialize;
 
+use crate::board::Board;
 use crate::setup::Toolchain;
 
 /// A row as the list has it, before anything is measured.
@@ -94,7 +95,9 @@ pub struct Row {
     pub variant: &'static str,
     /// `ours`, `published`, or the name of a crate.
     pub maker: &'static str,
-    /// Instructions on an ARMv5TE core, compiled in line.
+    /// The board whose core they are of.
+    pub board: Board,
+    /// Instructions on that core, compiled in line.
     pub instructions: f64,
     /// Instructions as a function that is called.
     pub called_instructions: f64,
@@ -144,8 +147,8 @@ pub enum PriceError {
 
 /// The whole list, from images built, run and compared with the host. Errors are the recorded ones while the record is about
 /// the sources as they are, and those of a sample for every other row.
-pub fn prices(toolchain: &Toolchain, qemu: &Path) -> Result<Vec<Row>, PriceError> {
-    with_errors(&bench::measure(toolchain, qemu)?)
+pub fn prices(toolchain: &Toolchain, qemu: &Path, board: Board) -> Result<Vec<Row>, PriceError> {
+    with_errors(&bench::measure(toolchain, qemu, board, &Group::ALL)?)
 }
 
 /// The list from prices that have been taken.
@@ -185,6 +188,7 @@ fn row(measurement: &Measurement, errors: Option<&Proof>, is_proof: bool) -> Row
         op: entry.operation,
         variant: entry.variant,
         maker: maker_name(entry.maker),
+        board: measurement.board,
         instructions: measurement.instructions,
         called_instructions: measurement.called_instructions,
         cycles: None,

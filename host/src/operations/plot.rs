@@ -12,8 +12,9 @@ use plotters::style::register_font;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::Row;
-use super::anchors::ANCHORS;
+use super::anchors::{self, ANCHORS, Anchor};
 use super::table::{grouped, is_on_front};
+use crate::board::Board;
 use crate::file::{WriteError, write_whole};
 
 /// The built-in font, under the name that a browser replaces by its own.
@@ -70,6 +71,7 @@ pub fn svg(rows: &[Row]) -> Result<Vec<u8>, DrawingError> {
     draw(
         &SVGBackend::with_string(&mut text, size(&panels)).into_drawing_area(),
         &panels,
+        board_of(rows),
     )?;
     Ok(text.into_bytes())
 }
@@ -81,6 +83,7 @@ fn png(rows: &[Row]) -> Result<Vec<u8>, DrawingError> {
     draw(
         &BitMapBackend::with_buffer(&mut rgb, (width, height)).into_drawing_area(),
         &panels,
+        board_of(rows),
     )?;
     let mut bytes = Vec::new();
     PngEncoder::new(&mut bytes).write_image(&rgb, width, height, image::ExtendedColorType::Rgb8)?;
@@ -159,7 +162,8 @@ struct Panel {
 fn panels(rows: &[Row]) -> Vec<Panel> {
     let panel = |group: Vec<&Row>| {
         let points: Vec<Point> = group.iter().filter_map(|row| point(row, &group)).collect();
-        let quoted = ANCHORS.iter().filter(|anchor| anchor.op == group[0].op);
+        let quotes = |anchor: &&Anchor| anchor.op == group[0].op && anchors::BOARD == group[0].board;
+        let quoted = ANCHORS.iter().filter(quotes);
         // Whose library it is makes no difference to single precision's results, or hardly.
         let single = group.iter().find(|row| matches!(row.maker, "f32" | "libm"));
         let single = single.and_then(|row| row.max_error_ulp);
@@ -197,14 +201,19 @@ fn point(row: &Row, group: &[&Row]) -> Option<Point> {
     })
 }
 
-fn draw<Backend: DrawingBackend>(canvas: &Canvas<Backend>, panels: &[Panel]) -> Drawn
+/// The board that a list is of.
+fn board_of(rows: &[Row]) -> Board {
+    rows.first().map(|row| row.board).unwrap_or_default()
+}
+
+fn draw<Backend: DrawingBackend>(canvas: &Canvas<Backend>, panels: &[Panel], board: Board) -> Drawn
 where
     Backend::ErrorType: 'static,
 {
     register_font(FONT, FontStyle::Normal, dejavu::sans::regular())
         .map_err(|_| "the built-in font is damaged")?;
     canvas.fill(&WHITE).map_err(|error| error.to_string())?;
-    legend(canvas)?;
+    legend(canvas, board)?;
     for (place, panel) in panels.iter().enumerate() {
         let (column, line) = ((place % COLUMNS) as i32, (place / COLUMNS) as i32);
         draw_panel(canvas, (column * PANEL.0, HEADER + line * PANEL.1), panel)?;
@@ -212,13 +221,15 @@ where
     canvas.present().map_err(|error| error.to_string().into())
 }
 
-fn legend<Backend: DrawingBackend>(canvas: &Canvas<Backend>) -> Drawn
+fn legend<Backend: DrawingBackend>(canvas: &Canvas<Backend>, board: Board) -> Drawn
 where
     Backend::ErrorType: 'static,
 {
-    let title =
-        "Worst error (ulp) against instructions on an ARMv5TE core; the line joins what nothing else beats";
-    text(canvas, title, TITLE, (16, 8), HPos::Left, &INK)?;
+    let title = format!(
+        "Worst error (ulp) against instructions on {}; the line joins what nothing else beats",
+        board.processor()
+    );
+    text(canvas, &title, TITLE, (16, 8), HPos::Left, &INK)?;
     let mut x = 24;
     for (kind, name) in Kind::ALL {
         kind.mark(canvas, (x, 36))?;

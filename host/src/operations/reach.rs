@@ -13,7 +13,7 @@ pub struct Code {
 #[derive(Debug)]
 struct Function {
     name: String,
-    words: Vec<u32>,
+    code: Vec<u8>,
 }
 
 impl Function {
@@ -23,11 +23,7 @@ impl Function {
     }
 
     fn bytes(&self) -> u64 {
-        if self.panics() {
-            0
-        } else {
-            4 * self.words.len() as u64
-        }
+        if self.panics() { 0 } else { self.code.len() as u64 }
     }
 }
 
@@ -41,7 +37,7 @@ pub struct Reach {
 }
 
 impl Code {
-    /// Reads the A32 functions of an ELF file.
+    /// Reads the functions of an ELF file. An odd address says that a function is Thumb code.
     pub fn of(elf: &[u8]) -> Result<Self, String> {
         let file = object::File::parse(elf).map_err(|error| error.to_string())?;
         let functions = file
@@ -49,11 +45,10 @@ impl Code {
             .filter(|symbol| symbol.kind() == SymbolKind::Text && symbol.size() > 0)
             .filter_map(|symbol| {
                 let section = file.section_by_index(symbol.section_index()?).ok()?;
-                let code = section.data_range(symbol.address(), symbol.size()).ok()??;
-                let (words, _) = code.as_chunks::<4>();
+                let code = section.data_range(symbol.address() & !1, symbol.size()).ok()??;
                 let function = Function {
                     name: symbol.name().ok()?.to_owned(),
-                    words: words.iter().map(|&word| u32::from_le_bytes(word)).collect(),
+                    code: code.to_vec(),
                 };
                 Some((symbol.address(), function))
             })
@@ -70,7 +65,11 @@ impl Code {
                 && seen.insert(address)
                 && !function.panics()
             {
-                open.extend(targets(address, &function.words));
+                open.extend(if address & 1 == 0 {
+                    a32_targets(address, &function.code)
+                } else {
+                    thumb_targets(address, &function.code)
+                });
             }
         }
         let reached = || seen.iter().filter_map(|address| self.functions.get(address));
@@ -91,14 +90,42 @@ pub fn tables(elf: &[u8], crate_name: &str) -> Result<BTreeMap<String, u64>, Str
 
 /// Where a function's branches lead. A constant between the instructions may look like one, but hardly leads to where a
 /// function starts.
-fn targets(address: u64, words: &[u32]) -> impl Iterator<Item = u64> {
+fn a32_targets(address: u64, code: &[u8]) -> Vec<u64> {
     const BRANCH: u32 = 0b101 << 25;
     const KIND: u32 = 0b111 << 25;
-    (address..).step_by(4).zip(words).filter_map(|(at, &word)| {
+    let (words, _) = code.as_chunks::<4>();
+    let places = (address..).step_by(4).zip(words);
+    let targets = places.filter_map(|(at, &word)| {
+        let word = u32::from_le_bytes(word);
         // The distance in words from two instructions on, in 24 bits.
         let distance = i64::from((word << 8) as i32 >> 6) + 8;
         (word & KIND == BRANCH).then(|| at.wrapping_add_signed(distance))
-    })
+    });
+    targets.collect()
+}
+
+/// As [`a32_targets`], for branches and calls that reach other functions: `B.W` and `BL` (*ARMv7-M Architecture Reference
+/// Manual*, ARM DDI 0403E, A7.7.12 and A7.7.18).
+fn thumb_targets(address: u64, code: &[u8]) -> Vec<u64> {
+    let (halves, _) = code.as_chunks::<2>();
+    let half = |index: usize| halves.get(index).map(|&half| u32::from(u16::from_le_bytes(half)));
+    let (mut index, mut targets) = (0, Vec::new());
+    while let Some(first) = half(index) {
+        // These begin an instruction of two halves.
+        let is_wide = first >= 0xe800;
+        if let (true, 0b11110, Some(second)) = (is_wide, first >> 11, half(index + 1))
+            && second & 0x9000 == 0x9000
+        {
+            let sign = first >> 10 & 1;
+            let [i1, i2] = [second >> 13 & 1, second >> 11 & 1].map(|bit| !(bit ^ sign) & 1);
+            let distance = sign << 31 | i1 << 30 | i2 << 29 | (first & 0x3ff) << 19 | (second & 0x7ff) << 8;
+            // From the instruction after this one, two bytes a step.
+            let distance = i64::from(distance as i32 >> 7) + 4;
+            targets.push((address + 2 * index as u64).wrapping_add_signed(distance));
+        }
+        index += 1 + usize::from(is_wide);
+    }
+    targets
 }
 
 #[cfg(test)]
@@ -110,7 +137,7 @@ mod tests {
         // At 0: b 8; at 4: bx lr; at 8: bl 0; at 12: bx lr.
         let function = |name: &str, words: &[u32]| Function {
             name: name.to_owned(),
-            words: words.to_vec(),
+            code: words.iter().flat_map(|word| word.to_le_bytes()).collect(),
         };
         let code = Code {
             functions: BTreeMap::from([
@@ -126,5 +153,21 @@ mod tests {
         );
         assert_eq!(code.from(16).expect("a function").bytes, 4);
         assert_eq!(code.from(4), None);
+    }
+
+    #[test]
+    fn thumb_code_has_branches_of_its_own() {
+        let code =
+            |halves: &[u16]| -> Vec<u8> { halves.iter().flat_map(|half| half.to_le_bytes()).collect() };
+        // At 0: nop; bl 0x20; b.w 0x100; bx lr.
+        let forth = code(&[0xbf00, 0xf000, 0xf80d, 0xf000, 0xb87b, 0x4770]);
+        assert_eq!(thumb_targets(1, &forth), [0x21, 0x101]);
+        // At 0x40: bl 0, which is 0x44 back.
+        assert_eq!(thumb_targets(0x41, &code(&[0xf7ff, 0xffde])), [1]);
+        // movw r0, #0xf000 has a half that looks like a branch's first, but is none.
+        assert_eq!(
+            thumb_targets(1, &code(&[0xf24f, 0x0000, 0xf800, 0x4770])),
+            [0u64; 0]
+        );
     }
 }

@@ -12,7 +12,7 @@ pub(crate) enum Bench {
     Generators(generators::Arguments),
     /// Print what each arithmetic operation costs on a core, and how wrong it is
     ///
-    /// Instructions are those of the emulated ARMv5TE core without the loop around them: once compiled in line, once
+    /// Instructions are those of an emulated core without the loop around them: once compiled in line, once
     /// called. A star marks what nothing else of the operation beats in cost and in worst error.
     Ops(ops::Arguments),
 }

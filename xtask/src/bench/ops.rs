@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use anyhow::Context;
+use anyhow::{Context, ensure};
+use host::board::Board;
 use host::operations::{self, plot, readme};
 use host::setup::{self, Wanted};
 
@@ -12,6 +13,9 @@ use crate::SetUp;
 /// Arguments of `bench ops`.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
+    /// Board of the core
+    #[arg(long, value_enum, default_value_t)]
+    board: Board,
     /// Write the list as JSON, too
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -26,6 +30,11 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
+    ensure!(
+        !arguments.bless || arguments.board == Board::default(),
+        "fixedmath's README shows prices of {}: leave out --board or --bless",
+        Board::default()
+    );
     let wanted = Wanted {
         qemu: true,
         firmware: true,
@@ -33,7 +42,11 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
     };
     let tools = setup::ensure(wanted, arguments.set_up.install())?;
     let toolchain = tools.firmware.context("set-up gave no compiler")?;
-    let rows = operations::prices(&toolchain, &tools.qemu.context("set-up gave no QEMU")?)?;
+    let rows = operations::prices(
+        &toolchain,
+        &tools.qemu.context("set-up gave no QEMU")?,
+        arguments.board,
+    )?;
     print!("{}", operations::table::table(&rows));
     if let Some(path) = &arguments.json {
         let json = serde_json::to_string_pretty(&rows)?;
