@@ -237,12 +237,7 @@ pub fn cargo_for(toolchain: &Toolchain, verb: &str, package: &str, target: &str)
         .args(["--package", package, "--target", target])
         .args(["-Zbuild-std=core", "--target-dir"])
         .arg(target_folder())
-        .env("RUSTC", &toolchain.compiler.rustc)
-        // What lets a stable compiler build its own library.
-        .env("RUSTC_BOOTSTRAP", "1")
-        .env(linker_variable(target), &toolchain.linker)
-        // Cargo's subcommands must be of the same toolchain.
-        .env("PATH", path_from(toolchain.compiler.cargo.parent()))
+        .envs(environment(toolchain, target))
         // Flags meant for the host's programs are not for a board's.
         .env_remove("RUSTFLAGS")
         .env_remove("CARGO_ENCODED_RUSTFLAGS")
@@ -250,10 +245,22 @@ pub fn cargo_for(toolchain: &Toolchain, verb: &str, package: &str, target: &str)
     command
 }
 
-/// Where cargo looks for a target's linker.
-fn linker_variable(target: &str) -> String {
+/// The variables by which cargo finds the toolchain for a processor.
+pub fn environment(toolchain: &Toolchain, target: &str) -> [(String, OsString); 4] {
+    [
+        ("RUSTC".to_owned(), toolchain.compiler.rustc.clone().into()),
+        // What lets a stable compiler build its own library.
+        ("RUSTC_BOOTSTRAP".to_owned(), "1".into()),
+        (variable_of(target, "LINKER"), toolchain.linker.clone().into()),
+        // Cargo's subcommands must be of the same toolchain.
+        ("PATH".to_owned(), path_from(toolchain.compiler.cargo.parent())),
+    ]
+}
+
+/// Where cargo looks for a target's own linker, runner and the like.
+pub fn variable_of(target: &str, what: &str) -> String {
     let target = target.replace('-', "_").to_uppercase();
-    format!("CARGO_TARGET_{target}_LINKER")
+    format!("CARGO_TARGET_{target}_{what}")
 }
 
 /// PATH with another folder before all others.

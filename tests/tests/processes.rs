@@ -244,3 +244,25 @@ fn the_collector_takes_cores_that_are_started_elsewhere() {
     );
     assert!(said(&unbooted).contains("bad boot block"), "{}", said(&unbooted));
 }
+
+/// With the variables that `cargo xtask toolchain` prints, plain cargo is enough.
+#[test]
+fn cargo_run_in_a_board_s_folder_runs_an_image() {
+    let printed = xtask(&["toolchain", "--no-install"]).output().expect("it starts");
+    assert!(printed.status.success(), "{}", said(&printed));
+    let exports = String::from_utf8(printed.stdout).expect("UTF-8");
+    for board in Board::ALL {
+        let script = format!("{exports}\nexec cargo run --locked --profile firmware --example clock_probe");
+        let mut shell = Command::new("sh");
+        shell.arg("-c").arg(script);
+        shell.current_dir(firmware::workspace().join("firmware").join(board.name()));
+        // The images of the other tests, which need not be built again.
+        shell.env("CARGO_TARGET_DIR", firmware::target_folder());
+        let output = shell.output().expect("it starts");
+        assert!(
+            output.status.success() && said(&output).contains("ticks: 576000"),
+            "{board}: {}",
+            said(&output)
+        );
+    }
+}

@@ -5,6 +5,7 @@ mod qemu_run;
 mod render;
 mod size;
 mod test;
+mod toolchain;
 mod verify;
 
 use std::process::ExitCode;
@@ -25,6 +26,10 @@ enum Verb {
     Test(test::Arguments),
     /// Run one image on one emulated core; the exit code is the core's
     QemuRun(qemu_run::Arguments),
+    /// Print the variables with which plain cargo builds and runs a board's crate, for a shell to evaluate
+    ///
+    /// As in: eval "$(cargo xtask toolchain)"; cd firmware/mps2-an385; cargo run --example core_tests
+    Toolchain(toolchain::Arguments),
     /// Print each image's bytes of code, data and stack against the budget
     Size(size::Arguments),
     /// Measure parts by themselves
@@ -71,6 +76,7 @@ fn main() -> ExitCode {
         Verb::Render(arguments) => render::run(&arguments),
         Verb::Test(arguments) => test::run(&arguments),
         Verb::QemuRun(arguments) => qemu_run::run(&arguments),
+        Verb::Toolchain(arguments) => toolchain::run(&arguments),
         Verb::Size(arguments) => size::run(&arguments),
         Verb::Bench(bench) => bench::run(&bench),
         Verb::Verify(arguments) => verify::run(&arguments),
