@@ -35,7 +35,7 @@ pub use worker::{Outcome, Renderer, StackUse, Worker};
 use tracer::profile::Profile;
 use tracer::scene::{Needs, Scene};
 use tracer::unit::{Plan, Sums, Termination};
-use wire::{Boot, FromCore, MAX_PAYLOAD, Name, Report};
+use wire::{Boot, FromCore, LastWords, MAX_PAYLOAD, Name, Report};
 
 /// Ticks of a [`Clock`] in a second.
 pub const TICKS_PER_SECOND: u32 = 24_000_000;
@@ -96,11 +96,17 @@ pub fn run<P: Profile, N: Needs>(
     Worker::new(boot, plan, board, &mut renderer, &mut network, &mut clock)?.run(stack)
 }
 
-/// Tells the host why this core ends. Tries once: who sends this has little left to rely on.
+/// Tells the host why this core ends, and at which instruction where that is known. Tries once: who sends this has little left to
+/// rely on.
 #[inline(never)]
-pub fn last_words(boot: &Boot<'_>, network: &mut dyn Network, words: &str) -> Result<(), SendError> {
+pub fn last_words(
+    boot: &Boot<'_>,
+    network: &mut dyn Network,
+    address: Option<u32>,
+    words: &str,
+) -> Result<(), SendError> {
     let mut packet = [0; MAX_PAYLOAD];
-    let report = Report::Fault(words);
+    let report = Report::Fault(LastWords { address, words });
     let len = FromCore {
         core: boot.core,
         seq: 0,

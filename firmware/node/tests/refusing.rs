@@ -4,7 +4,7 @@ use node::{Clock, Fault, Network, SendError, StackUse};
 use tracer::profile::Precise;
 use tracer::scene::All;
 use wire::boot::PixelOrder;
-use wire::{Boot, FromCore, Name, Report};
+use wire::{Boot, FromCore, LastWords, Name, Report};
 
 /// Keeps what is sent, as long as there is room for it.
 #[derive(Default)]
@@ -83,12 +83,13 @@ fn a_scene_that_is_none() {
 fn last_words_name_the_core() {
     let mut mailbox = Mailbox::default();
     let words = Fault::Scene.as_str();
-    node::last_words(&job(), &mut &mut mailbox, words).unwrap();
+    let address = Some(0x1A34);
+    node::last_words(&job(), &mut &mut mailbox, address, words).unwrap();
     let expected = FromCore {
         core: 20,
         seq: 0,
         session: 77,
-        report: Report::Fault(words),
+        report: Report::Fault(LastWords { address, words }),
     };
     assert_eq!(FromCore::decode(&mailbox.sent[0]), Ok(expected));
 }
@@ -99,5 +100,6 @@ fn last_words_are_tried_once() {
         full: true,
         ..Mailbox::default()
     };
-    assert_eq!(node::last_words(&job(), &mut &mut mailbox, "!"), Err(SendError));
+    let refused = node::last_words(&job(), &mut &mut mailbox, None, "!");
+    assert_eq!(refused, Err(SendError));
 }

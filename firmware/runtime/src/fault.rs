@@ -9,9 +9,14 @@ use wire::Boot;
 use crate::{Board, Exit, memory};
 
 /// Says why on the console and to the host, and ends.
+pub fn die<B: Board>(words: &Words, code: Exit) -> ! {
+    die_at::<B>(None, words, code)
+}
+
+/// The same where the instruction is known that failed: the host, which has the image, says whose it is.
 #[cold]
 #[inline(never)]
-pub fn die<B: Board>(words: &Words, code: Exit) -> ! {
+fn die_at<B: Board>(address: Option<u32>, words: &Words, code: Exit) -> ! {
     B::say(words.as_str());
     if dying::again() {
         B::exit(code);
@@ -19,8 +24,9 @@ pub fn die<B: Board>(words: &Words, code: Exit) -> ! {
     if let Ok(boot) = Boot::decode(memory::boot_block())
         && let Some(mut controller) = B::controller(boot.mac())
     {
+        let mut network = Ethernet::new(&boot, &mut controller);
         // There is nobody left to tell if this fails; the console has it.
-        let _ = node::last_words(&boot, &mut Ethernet::new(&boot, &mut controller), words.as_str());
+        let _ = node::last_words(&boot, &mut network, address, words.as_str());
     }
     B::exit(code)
 }
@@ -40,12 +46,13 @@ pub fn panicked<B: Board>(info: &PanicInfo<'_>) -> ! {
 
 /// What a board's handlers of processor exceptions do: `what` went wrong, and the address of the instruction.
 pub fn exception<B: Board>(what: &str, address: usize) -> ! {
+    let address = address as u32;
     let mut words = Words::of(what);
-    words.and(" at 0x").hexadecimal(address as u32);
-    die::<B>(&words, Exit::Exception)
+    words.and(" at 0x").hexadecimal(address);
+    die_at::<B>(Some(address), &words, Exit::Exception)
 }
 
-/// Remembers that the core is already dying, so that a fault in [`die`] does not end in a circle.
+/// Remembers that the core is already dying, so that a fault in [`die_at`] does not end in a circle.
 mod dying {
     use core::cell::Cell;
 

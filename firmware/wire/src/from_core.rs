@@ -30,7 +30,8 @@
 //! | 0           | 4     | the most stack ever used, in bytes |
 //! | 4           | 4     | size of the stack in bytes         |
 //!
-//! FAULT (0x0104): last words, UTF-8, at most 256 bytes. Arguments 2 and 3 are zero.
+//! FAULT (0x0104): I fail. Argument 2: the address of the instruction that failed, zero where nobody knows it. Argument 3: 1 where
+//! that address is known, else 0. Data: last words, UTF-8, at most 256 bytes.
 
 use crate::bytes::Reader;
 use crate::{DecodeError, Frame, MAX_DATA, MAX_PAYLOAD, MAX_SAMPLES, Name, PixelSums};
@@ -66,8 +67,8 @@ pub enum Report<'a> {
     Pixels(Pixels),
     /// "I was told to stop, and halt now."
     Farewell(Farewell),
-    /// Last words of a core that fails. Encoding cuts them to the 256 bytes there is room for.
-    Fault(&'a str),
+    /// "I fail."
+    Fault(LastWords<'a>),
 }
 
 /// A core without work.
@@ -121,6 +122,15 @@ pub struct Farewell {
     pub stack_size: u32,
 }
 
+/// Why a core fails, and where.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LastWords<'a> {
+    /// The instruction that failed, where the core knows it.
+    pub address: Option<u32>,
+    /// The cause in words. Encoding cuts them to the 256 bytes there is room for.
+    pub words: &'a str,
+}
+
 impl<'a> FromCore<'a> {
     /// Writes the packet and returns its length. The rest of `out` stays as it is.
     pub fn encode(&self, out: &mut [u8; MAX_PAYLOAD]) -> usize {
@@ -132,7 +142,11 @@ impl<'a> FromCore<'a> {
                 u32::from(pixels.samples) << 16 | u32::from(pixels.epoch),
             ),
             Report::Farewell(farewell) => (FAREWELL, farewell.units, farewell.rejected),
-            Report::Fault(_) => (FAULT, 0, 0),
+            Report::Fault(fault) => (
+                FAULT,
+                fault.address.unwrap_or(0),
+                u32::from(fault.address.is_some()),
+            ),
         };
         let (core, seq, session) = (self.core, self.seq, self.session);
         let mut writer = Frame {
@@ -164,7 +178,7 @@ impl<'a> FromCore<'a> {
                 writer.u32(farewell.stack_used);
                 writer.u32(farewell.stack_size);
             }
-            Report::Fault(words) => writer.bytes(cut(words).as_bytes()),
+            Report::Fault(fault) => writer.bytes(cut(fault.words).as_bytes()),
         }
         writer.len()
     }
@@ -176,8 +190,7 @@ impl<'a> FromCore<'a> {
             HELLO => Report::Hello(Hello::decode(&frame)?),
             PIXELS => Report::Pixels(Pixels::decode(&frame)?),
             FAREWELL => Report::Farewell(Farewell::decode(&frame)?),
-            FAULT if frame.arg2 != 0 || frame.arg3 != 0 => return Err(DecodeError::Range),
-            FAULT => Report::Fault(core::str::from_utf8(frame.data).map_err(|_| DecodeError::Text)?),
+            FAULT => Report::Fault(LastWords::decode(&frame)?),
             other => return Err(DecodeError::Command(other)),
         };
         Ok(Self {
@@ -238,6 +251,18 @@ impl Farewell {
         };
         reader.end()?;
         Ok(farewell)
+    }
+}
+
+impl<'a> LastWords<'a> {
+    fn decode(frame: &Frame<'a>) -> Result<Self, DecodeError> {
+        let address = match (frame.arg2, frame.arg3) {
+            (0, 0) => None,
+            (address, 1) => Some(address),
+            _ => return Err(DecodeError::Range),
+        };
+        let words = core::str::from_utf8(frame.data).map_err(|_| DecodeError::Text)?;
+        Ok(Self { address, words })
     }
 }
 

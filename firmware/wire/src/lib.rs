@@ -43,13 +43,13 @@ pub use boot::Boot;
 pub use bytes::crc32;
 pub use error::DecodeError;
 pub use frame::Frame;
-pub use from_core::{Farewell, FromCore, Hello, Pixels, Report};
+pub use from_core::{Farewell, FromCore, Hello, LastWords, Pixels, Report};
 pub use name::Name;
 pub use sums::{PixelSums, SUM_MAX, SumsError};
 pub use to_core::{Order, ToCore};
 
 /// Version of everything in this crate; a core says it in HELLO, and the boot block carries it.
-pub const VERSION: u16 = 1;
+pub const VERSION: u16 = 2;
 
 /// The collector's UDP port unless a job says otherwise.
 pub const DEFAULT_PORT: u16 = 17893;

@@ -1,7 +1,9 @@
 //! Every packet, byte for byte. Buffers are filled with 0xa5 first, so a byte that an encoder forgets shows.
 
 use wire::boot::{self, PixelOrder};
-use wire::{Boot, Farewell, FromCore, Hello, MAX_PAYLOAD, Name, Order, PixelSums, Pixels, Report, ToCore};
+use wire::{
+    Boot, Farewell, FromCore, Hello, LastWords, MAX_PAYLOAD, Name, Order, PixelSums, Pixels, Report, ToCore,
+};
 
 const SESSION: u32 = 0x5E55_1041;
 
@@ -129,7 +131,34 @@ fn fault() {
             core: 17,
             seq: 0,
             session: SESSION,
-            report: Report::Fault("bad é"),
+            report: Report::Fault(LastWords {
+                address: None,
+                words: "bad é",
+            }),
+        },
+        &expected,
+    );
+}
+
+#[test]
+fn fault_at_an_address() {
+    #[rustfmt::skip]
+    let expected = [
+        0, 0,
+        0x07, 0x01, 0xFF, 0x21, 0, 0, 0, 0,
+        0x04, 0x01, 0, 0,
+        0x41, 0x10, 0x55, 0x5E, 0x34, 0x1A, 0, 0, 1, 0, 0, 0,
+        b'n', b'o',
+    ];
+    from_core(
+        FromCore {
+            core: 0,
+            seq: 0,
+            session: SESSION,
+            report: Report::Fault(LastWords {
+                address: Some(0x1A34),
+                words: "no",
+            }),
         },
         &expected,
     );
@@ -202,7 +231,7 @@ fn boot_block() {
     };
     #[rustfmt::skip]
     let expected = [
-        b'P', b'T', b'B', b'B', 1, 0, 80, 0,
+        b'P', b'T', b'B', b'B', 2, 0, 80, 0,
         2, 0, 4, 0,
         0x41, 0x10, 0x55, 0x5E,
         0x26, 0x39, 0xF4, 0xCB,
@@ -217,7 +246,7 @@ fn boot_block() {
         0xE5, 0x45, 0, 0,
         9, 0, 0, 0,
         // CRC-32 of the 76 bytes before, computed with Python's zlib.
-        0x81, 0xBA, 0x66, 0xEB,
+        0x7C, 0x48, 0x0A, 0xC2,
         b'1', b'2', b'3', b'4', b'5', b'6', b'7', b'8', b'9',
     ];
     let mut out = [0xa5; boot::MAX_LEN];

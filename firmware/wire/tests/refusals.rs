@@ -2,7 +2,8 @@
 
 use wire::boot::{self, PixelOrder};
 use wire::{
-    Boot, DecodeError, FromCore, MAX_PAYLOAD, Name, Order, PixelSums, Pixels, Report, SumsError, ToCore,
+    Boot, DecodeError, FromCore, LastWords, MAX_PAYLOAD, Name, Order, PixelSums, Pixels, Report, SumsError,
+    ToCore,
 };
 
 fn pixels_packet() -> Vec<u8> {
@@ -151,23 +152,51 @@ fn leases_are_checked() {
     assert_eq!(FromCore::decode(&out[..len]), Err(DecodeError::Address));
 }
 
-#[test]
-fn last_words_are_cut_between_characters() {
-    let words = "é".repeat(200);
-    let words = format!("x{words}");
+fn fault_packet(address: Option<u32>, words: &str) -> Vec<u8> {
     let mut out = [0; MAX_PAYLOAD];
     let len = FromCore {
         core: 0,
         seq: 0,
         session: 0,
-        report: Report::Fault(&words),
+        report: Report::Fault(LastWords { address, words }),
     }
     .encode(&mut out);
-    let Report::Fault(kept) = FromCore::decode(&out[..len]).unwrap().report else {
+    out[..len].to_vec()
+}
+
+#[test]
+fn last_words_are_cut_between_characters() {
+    let words = "é".repeat(200);
+    let words = format!("x{words}");
+    let packet = fault_packet(Some(0x1A34), &words);
+    let Report::Fault(kept) = FromCore::decode(&packet).unwrap().report else {
         panic!("not a fault")
     };
-    assert_eq!(kept.len(), 255);
-    assert!(words.starts_with(kept));
+    assert_eq!(kept.address, Some(0x1A34));
+    assert_eq!(kept.words.len(), 255);
+    assert!(words.starts_with(kept.words));
+}
+
+#[test]
+fn the_address_of_a_fault_is_there_or_is_not() {
+    let packet = fault_packet(Some(0), "!");
+    assert!(
+        FromCore::decode(&packet).is_ok(),
+        "0 is an address like any other"
+    );
+    let refused = |packet: &[u8], offset, bytes: &[u8]| {
+        assert_eq!(
+            FromCore::decode(&patched(packet, offset, bytes)),
+            Err(DecodeError::Range),
+            "offset {offset}: {bytes:?}"
+        );
+    };
+    refused(&packet, 22, &[2]); // neither known nor unknown
+    refused(&packet, 25, &[1]);
+    refused(&fault_packet(None, "!"), 18, &[1]); // an address that nobody knows
+    refused(&fault_packet(None, "!"), 21, &[1]);
+    let unreadable = patched(&packet, 26, &[0xFF]);
+    assert_eq!(FromCore::decode(&unreadable), Err(DecodeError::Text));
 }
 
 #[test]
@@ -234,7 +263,7 @@ fn damaged_boot_blocks_are_refused() {
         Err(DecodeError::Magic),
         "memory that nothing was loaded into"
     );
-    assert_eq!(Boot::decode(&patched(out, 4, &[2])), Err(DecodeError::Version(2)));
+    assert_eq!(Boot::decode(&patched(out, 4, &[1])), Err(DecodeError::Version(1)));
     assert_eq!(Boot::decode(&patched(out, 6, &[84])), Err(DecodeError::Range));
     for at in 8..len {
         let damaged = patched(out, at, &[out[at] ^ 0x10]);

@@ -3,8 +3,8 @@
 use proptest::prelude::*;
 use wire::boot::{self, PixelOrder};
 use wire::{
-    Boot, Farewell, FromCore, Hello, MAX_PAYLOAD, MAX_SAMPLES, Name, Order, PixelSums, Pixels, Report,
-    SUM_MAX, ToCore,
+    Boot, Farewell, FromCore, Hello, LastWords, MAX_PAYLOAD, MAX_SAMPLES, Name, Order, PixelSums, Pixels,
+    Report, SUM_MAX, ToCore,
 };
 
 /// Checks one payload against both decoders.
@@ -55,12 +55,20 @@ prop_compose! {
     }
 }
 
+prop_compose! {
+    fn last_words()(
+        address: Option<u32>, words in prop_oneof![Just(""), Just("panicked at unit.rs:7"), Just("µ")],
+    ) -> LastWords<'static> {
+        LastWords { address, words }
+    }
+}
+
 fn report() -> impl Strategy<Value = Report<'static>> {
     prop_oneof![
         hello().prop_map(Report::Hello),
         pixels().prop_map(Report::Pixels),
         farewell().prop_map(Report::Farewell),
-        prop_oneof![Just(""), Just("panicked at unit.rs:7"), Just("µ")].prop_map(Report::Fault),
+        last_words().prop_map(Report::Fault),
     ]
 }
 
@@ -135,7 +143,7 @@ proptest! {
     /// With the checksum put right, so that the checks behind it are reached.
     #[test]
     fn any_boot_header(mut header in prop::array::uniform32(any::<u8>()), tail in prop::collection::vec(any::<u8>(), 48)) {
-        header[..8].copy_from_slice(b"PTBB\x01\0\x50\0");
+        header[..8].copy_from_slice(b"PTBB\x02\0\x50\0");
         let mut memory = [&header[..], &tail].concat();
         let checksum = wire::crc32(&memory[..76]).to_le_bytes();
         memory[76..].copy_from_slice(&checksum);

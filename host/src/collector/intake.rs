@@ -126,7 +126,7 @@ mod tests {
             core: 0,
             seq: 0,
             session: session.id,
-            report: Report::Fault(""),
+            report: Report::Pixels(pixels),
         };
         change(&mut packet, &mut pixels);
         packet.report = Report::Pixels(pixels);

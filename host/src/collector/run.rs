@@ -205,7 +205,7 @@ impl<'a> Run<'a> {
                 record.sequence.sent_before(packet.seq);
                 record.farewell = Some(farewell);
             }
-            Report::Fault(words) => record.last_words = Some(words.to_owned()),
+            Report::Fault(fault) => record.last_words = Some(fault.words.to_owned()),
         }
         Some(packet)
     }

@@ -8,7 +8,7 @@ use std::rc::Rc;
 use node::{Clock, Fault, Network, Outcome, SendError, StackUse, Worker};
 use tracer::unit::Sums;
 use wire::boot::PixelOrder;
-use wire::{Boot, FromCore, MAX_PAYLOAD, Name, Order, Pixels, Report, ToCore};
+use wire::{Boot, FromCore, LastWords, MAX_PAYLOAD, Name, Order, Pixels, Report, ToCore};
 
 pub(crate) const SESSION: u32 = 0xCAFE_F00D;
 pub(crate) const RENDER_TICKS: u32 = 1000;
@@ -141,7 +141,10 @@ impl<H: FnMut(&mut World, Said)> Network for FakeNetwork<H> {
 
 fn owned(report: Report<'_>) -> Report<'static> {
     match report {
-        Report::Fault(words) => Report::Fault(String::from(words).leak()),
+        Report::Fault(fault) => Report::Fault(LastWords {
+            address: fault.address,
+            words: String::from(fault.words).leak(),
+        }),
         Report::Hello(hello) => Report::Hello(hello),
         Report::Pixels(pixels) => Report::Pixels(pixels),
         Report::Farewell(farewell) => Report::Farewell(farewell),
