@@ -30,3 +30,4 @@ pub mod report;
 pub mod scene;
 pub mod session;
 pub mod setup;
+pub mod symbols;

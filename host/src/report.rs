@@ -154,7 +154,9 @@ pub struct Core {
     pub stack_bytes: Option<u32>,
     /// Stack it has.
     pub stack_size: Option<u32>,
-    /// How it ended, if not well.
+    /// Times it was started again after it had failed.
+    pub restarts: usize,
+    /// The last thing that went wrong with it, if anything: how it ended, or why it was started again.
     pub fault: Option<String>,
 }
 

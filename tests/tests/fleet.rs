@@ -195,6 +195,8 @@ fn a_killed_core_costs_time_and_nothing_else() {
         fault.contains("signal 9"),
         "it was killed while it worked: {fault}"
     );
+    let restarts = &report["per_core"][1]["restarts"];
+    assert_eq!(restarts, 0, "somebody wanted it dead");
 }
 
 #[test]

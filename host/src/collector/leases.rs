@@ -159,7 +159,7 @@ impl Leases {
         arrival
     }
 
-    /// The core has ended: its leases go elsewhere, and it gets no more.
+    /// The core has ended: its leases go elsewhere, and it gets no more, whatever of it still arrives.
     pub fn ended(&mut self, core: u16) {
         self.dead.insert(core);
         for lease in self
@@ -170,6 +170,11 @@ impl Leases {
         {
             self.take_back(lease.next..lease.end);
         }
+    }
+
+    /// A core that had ended was started again: it gets work once it says something.
+    pub fn started_again(&mut self, core: u16) {
+        self.dead.remove(&core);
     }
 
     /// Takes back the leases of cores that have been silent for longer than 20 of their units and 2 seconds.

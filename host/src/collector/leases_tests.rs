@@ -106,6 +106,10 @@ fn a_silent_core_loses_its_leases_after_two_seconds_and_a_dead_one_at_once() {
         None,
         "a core that ended is not asked again"
     );
+    leases.started_again(1);
+    assert_eq!(leases.grant(1, ms(2_070)), None, "nobody knows where it is");
+    leases.idle(1, ms(2_070));
+    assert!(leases.grant(1, ms(2_070)).is_some());
 }
 
 #[test]

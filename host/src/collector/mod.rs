@@ -49,10 +49,27 @@ pub struct CoreRecord {
     pub sequence: Sequence,
     /// What it said when it was told to stop.
     pub farewell: Option<Farewell>,
-    /// What it said when it failed.
+    /// What it said when it failed, in the life it has or had last.
     pub last_words: Option<String>,
-    /// How it ended before it was told to, by its own or the fleet's word.
+    /// How it ended for good before it was told to, by its own or the fleet's word.
     pub ended: Option<String>,
+    /// Why it was started again, each time.
+    pub restarts: Vec<String>,
+}
+
+impl CoreRecord {
+    /// The last thing that went wrong with it.
+    pub fn fault(&self) -> Option<&str> {
+        let latest = self.last_words.as_ref().or(self.ended.as_ref());
+        latest.or(self.restarts.last()).map(String::as_str)
+    }
+
+    /// It has a new life, because its last one ended with `why`: it numbers its packets anew, and nobody knows yet where it is.
+    fn start_again(&mut self, why: String) {
+        self.restarts.push(why);
+        self.sequence.start_again();
+        (self.last_words, self.source) = (None, None);
+    }
 }
 
 /// How a collection ended.

@@ -7,14 +7,14 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use wire::boot::PixelOrder;
-use wire::{FromCore, MAX_PAYLOAD, Order, Pixels, Report, ToCore};
+use wire::{FromCore, LastWords, MAX_PAYLOAD, Order, Pixels, Report, ToCore};
 
 use super::intake::{Rejection, judge};
 use super::leases::{Arrival, Leases};
 use super::progress::{Progress, State};
 use super::{Collection, CoreRecord, End};
 use crate::film::{Film, FilmError};
-use crate::fleet::Fleet;
+use crate::fleet::{Fleet, RESTARTS};
 use crate::report::Packets;
 use crate::session::Session;
 
@@ -142,7 +142,7 @@ impl<'a> Run<'a> {
                 continue;
             }
             next_look = self.now() + TICK;
-            self.look_after_cores();
+            self.look_after_cores()?;
             self.show();
             // The packets of cores that have ended may still be in the socket: only an empty one is the end.
             if received.is_none()
@@ -179,7 +179,9 @@ impl<'a> Run<'a> {
             }
             Report::Pixels(pixels) => self.take_pixels(core, &pixels)?,
             Report::Farewell(_) => {}
-            Report::Fault(_) => self.bury(core, "it failed"),
+            // Its end follows, and says whether it has another life.
+            Report::Fault(_) if self.fleet.sees_ends() => self.take_leases_back(core),
+            Report::Fault(fault) => self.bury(core, fault.words),
         }
         self.hand_out(core);
         Ok(())
@@ -205,7 +207,7 @@ impl<'a> Run<'a> {
                 record.sequence.sent_before(packet.seq);
                 record.farewell = Some(farewell);
             }
-            Report::Fault(fault) => record.last_words = Some(fault.words.to_owned()),
+            Report::Fault(fault) => record.last_words = Some(explained(self.fleet, packet.core, &fault)),
         }
         Some(packet)
     }
@@ -236,20 +238,18 @@ impl<'a> Run<'a> {
     }
 
     /// Notices deaths and silence, and gives what came back of that to others.
-    fn look_after_cores(&mut self) {
-        for core in self.fleet.newly_ended() {
-            if self
-                .cores
-                .get(usize::from(core))
-                .is_some_and(|record| record.ended.is_none())
-            {
-                let how = self.fleet.how_ended(core);
-                self.bury(core, &how);
-            }
+    fn look_after_cores(&mut self) -> Result<(), CollectError> {
+        let ended = self.fleet.newly_ended();
+        if !ended.is_empty() {
+            // What they have ever said is in the socket, and must not be taken for the words of their next lives.
+            self.drain()?;
+        }
+        for core in ended {
+            self.part_from(core);
         }
         let now = self.now();
         let Work::Leased(leases) = &mut self.work else {
-            return;
+            return Ok(());
         };
         for core in leases.late(now) {
             self.progress
@@ -258,6 +258,19 @@ impl<'a> Run<'a> {
         for core in leases.holders() {
             self.hand_out(core);
         }
+        Ok(())
+    }
+
+    /// Takes all that has arrived.
+    fn drain(&mut self) -> Result<(), CollectError> {
+        let mut buffer = [0; MAX_PAYLOAD + 1];
+        self.socket.set_nonblocking(true)?;
+        while self.samples < self.session.samples()
+            && let Some((len, source)) = self.receive(&mut buffer)?
+        {
+            self.take(&buffer[..len], source)?;
+        }
+        Ok(self.socket.set_nonblocking(false)?)
     }
 
     /// Sends the core as many leases as it may have.
@@ -277,9 +290,41 @@ impl<'a> Run<'a> {
         }
     }
 
+    /// The core has ended before it was told to: it is started again, or gone for good.
+    fn part_from(&mut self, core: u16) {
+        let record = &self.cores[usize::from(core)];
+        if record.ended.is_some() {
+            return;
+        }
+        let said = record.last_words.clone();
+        let how = said.unwrap_or_else(|| self.fleet.how_ended(core));
+        match self.fleet.start_again(core) {
+            Ok(true) => self.welcome_back(core, how),
+            Ok(false) => self.bury(core, &how),
+            Err(error) => self.bury(core, &format!("{how}; {error}")),
+        }
+    }
+
+    fn welcome_back(&mut self, core: u16, why: String) {
+        self.take_leases_back(core);
+        if let Work::Leased(leases) = &mut self.work {
+            leases.started_again(core);
+        }
+        let record = &mut self.cores[usize::from(core)];
+        let time = record.restarts.len() + 1;
+        self.progress.say(&format!(
+            "core {core} is started again ({time} of {RESTARTS}): {why}"
+        ));
+        record.start_again(why);
+    }
+
     fn bury(&mut self, core: u16, how: &str) {
         self.cores[usize::from(core)].ended = Some(how.to_owned());
         self.progress.say(&format!("core {core} is gone: {how}"));
+        self.take_leases_back(core);
+    }
+
+    fn take_leases_back(&mut self, core: u16) {
         if let Work::Leased(leases) = &mut self.work {
             leases.ended(core);
         }
@@ -342,6 +387,9 @@ impl<'a> Run<'a> {
             record.core,
             self.fleet.how_ended(record.core)
         );
+        if !record.restarts.is_empty() {
+            text.push_str(&format!(", started again {} times", record.restarts.len()));
+        }
         if let Some(words) = &record.last_words {
             text.push_str(&format!("\n    its last words: {words}"));
         }
@@ -392,5 +440,14 @@ impl<'a> Run<'a> {
                 gone.extend(self.fleet.newly_ended());
             }
         }
+    }
+}
+
+/// Last words, with the place in the source where the core's image is known.
+fn explained(fleet: &Fleet, core: u16, fault: &LastWords<'_>) -> String {
+    let place = fault.address.and_then(|address| fleet.place(core, address));
+    match place {
+        Some(place) => format!("{}, in {place}", fault.words),
+        None => fault.words.to_owned(),
     }
 }

@@ -37,6 +37,12 @@ impl Sequence {
         }
     }
 
+    /// The core was started again: its next packet is number 0, and what is missing now never comes.
+    pub fn start_again(&mut self) {
+        self.next = 0;
+        self.missing.clear();
+    }
+
     /// Packets that were sent and have not come.
     pub fn lost(&self) -> u64 {
         self.lost
@@ -78,6 +84,24 @@ mod tests {
         sequence.received(0);
         sequence.sent_before(2);
         sequence.sent_before(1);
+        assert_eq!(sequence.lost(), 1);
+    }
+
+    #[test]
+    fn a_core_that_is_started_again_has_lost_what_was_missing_and_no_more() {
+        let mut sequence = Sequence::default();
+        [0, 1, 3, 4]
+            .into_iter()
+            .for_each(|number| sequence.received(number));
+        sequence.start_again();
+        // The last one is the 2 of the new life, not the missing one of the old.
+        [0, 1, 2].into_iter().for_each(|number| sequence.received(number));
+        assert_eq!(sequence.lost(), 1);
+        // Nor is it thought of as an old packet when the old life was long.
+        let mut sequence = Sequence::default();
+        (0..40_000).for_each(|number| sequence.received(number));
+        sequence.start_again();
+        sequence.received(1);
         assert_eq!(sequence.lost(), 1);
     }
 

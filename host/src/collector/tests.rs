@@ -15,7 +15,7 @@ use wire::boot::PixelOrder;
 use wire::{Boot, Name};
 
 use super::*;
-use crate::fleet::{Fleet, NativeFleet};
+use crate::fleet::{self, Fleet, NativeFleet, QemuFleet};
 use crate::session::tests::small;
 use crate::session::{Route, Session};
 
@@ -299,6 +299,65 @@ fn cores_that_failed_to_start_end_it_at_once_with_their_reason() {
         "{why}"
     );
     assert!(why.contains("core 1: it failed: its boot block"), "{why}");
+}
+
+/// A fleet whose QEMU is a script, which finds its own folder in `$0`.
+fn scripted(folder: &std::path::Path, script: &str) -> Fleet {
+    let qemu = fleet::fake_qemu(folder, script);
+    Fleet::Qemu(QemuFleet::start(&qemu, &fleet::cores([0]), folder).expect("it starts"))
+}
+
+#[test]
+fn a_core_that_fails_every_time_is_given_up_soon() {
+    let session = small(1, PixelOrder::Leased);
+    let socket = bind(Ipv4Addr::LOCALHOST, 0).expect("a free port");
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut fleet = scripted(folder.path(), "echo oh no; exit 4");
+    let collection = collect(&session, &socket, &mut fleet, &RUNNING, &mut Progress::Silent);
+    let collection = collection.expect("the socket works");
+    let End::Deserted(why) = collection.end else {
+        panic!("no core ever worked")
+    };
+    for words in ["all cores have ended", "code 4", "started again 3 times", "oh no"] {
+        assert!(why.contains(words), "{words} in: {why}");
+    }
+    assert_eq!(collection.cores[0].restarts, ["its QEMU ended with code 4"; 3]);
+    // Silence alone would have ended it, but later.
+    assert!(
+        collection.elapsed < Duration::from_secs(5),
+        "{:?}",
+        collection.elapsed
+    );
+}
+
+#[test]
+fn a_core_that_is_started_again_works_on() {
+    let session = small(1, PixelOrder::Leased);
+    let socket = bind(Ipv4Addr::LOCALHOST, 0).expect("a free port");
+    let port = socket.local_addr().expect("it is bound").port();
+    let folder = tempfile::tempdir().expect("a folder");
+    // The script fails in its first life; in the second, a thread does the core's work in its stead.
+    let script = "cd $(dirname $0); [ -e first ] || { touch first; exit 3; }; touch second; exec sleep 60";
+    let (mut fleet, second) = (scripted(folder.path(), script), folder.path().join("second"));
+    let of_core = session.clone();
+    let core = thread::spawn(move || {
+        while !second.exists() {
+            thread::sleep(Duration::from_millis(1));
+        }
+        work(&of_core, 0, port, Faults::default(), Arc::default())
+    });
+    let collection = collect(&session, &socket, &mut fleet, &RUNNING, &mut Progress::Silent);
+    let collection = collection.expect("the socket works");
+    assert_eq!(collection.end, End::Complete);
+    assert_eq!(collection.film, whole_film(&session));
+    assert_eq!(collection.packets.lost, 0);
+    let record = &collection.cores[0];
+    assert_eq!(record.restarts, ["its QEMU ended with code 3"]);
+    assert_eq!(
+        (record.fault(), &record.ended),
+        (Some("its QEMU ended with code 3"), &None)
+    );
+    assert!(core.join().expect("no panic").is_ok());
 }
 
 #[test]

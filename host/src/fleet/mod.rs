@@ -4,7 +4,14 @@ mod native;
 mod qemu;
 
 pub use native::NativeFleet;
+#[cfg(test)]
+pub(crate) use qemu::tests::{cores, fake_qemu};
 pub use qemu::{Core, QemuFleet, run_to_end, run_with_peer};
+
+use crate::symbols::Place;
+
+/// Times a core is started again at most.
+pub const RESTARTS: usize = 3;
 
 /// Lines of a core's output that are kept for a report of its end.
 const LAST_LINES: usize = 5;
@@ -61,6 +68,29 @@ impl Fleet {
             Self::Elsewhere => return "started elsewhere".to_owned(),
         };
         known.unwrap_or_else(|| "still running".to_owned())
+    }
+
+    /// Starts a core that has ended again, where that may help, and says whether it did.
+    ///
+    /// A thread of this host is not started again, as it runs the very program that looks after it.
+    pub fn start_again(&mut self, core: u16) -> Result<bool, FleetError> {
+        match self {
+            Self::Qemu(fleet) => fleet.start_again(core),
+            Self::Native(_) | Self::Elsewhere => Ok(false),
+        }
+    }
+
+    /// Whether a core that fails tells it to the fleet too, by its end.
+    pub fn sees_ends(&self) -> bool {
+        !matches!(self, Self::Elsewhere)
+    }
+
+    /// Where in the source of a core's image an address is.
+    pub fn place(&self, core: u16, address: u32) -> Option<Place> {
+        match self {
+            Self::Qemu(fleet) => Place::of(fleet.image(core)?, address),
+            Self::Native(_) | Self::Elsewhere => None,
+        }
     }
 
     /// The last lines that a core wrote on its console.

@@ -7,12 +7,15 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Output, Stdio};
 use std::time::{Duration, Instant};
 
-use super::{FleetError, LAST_LINES};
+use super::{FleetError, LAST_LINES, RESTARTS};
 use crate::board::Board;
 use crate::{memory, setup};
 
 /// Time between two looks at the processes' memory, which nobody can ask for once they have ended.
 const MEASURE_EVERY: Duration = Duration::from_millis(250);
+/// The exit codes of a core that has run into a fault of its program: a panic, and an exception of the processor. They are
+/// `runtime::Exit`'s; what it says with another code it has thought about, and would say again.
+const FAILED: [i32; 2] = [3, 4];
 /// How much of the end of a log is read for its last lines.
 const TAIL: u64 = 4096;
 
@@ -46,15 +49,45 @@ pub struct Core {
 /// One emulated core.
 #[derive(Debug)]
 struct Guest {
+    core: Core,
+    files: Files,
     child: Child,
-    log: PathBuf,
     ended: Option<ExitStatus>,
+    restarts: usize,
     peak_memory: u64,
+}
+
+impl Guest {
+    /// Writes down the process's id.
+    fn note_process(&self) -> Result<(), FleetError> {
+        let file = &self.files.pid;
+        fs::write(file, format!("{}\n", self.child.id())).map_err(unusable(file))
+    }
+}
+
+/// A core's files in the fleet's folder.
+#[derive(Debug)]
+struct Files {
+    boot: PathBuf,
+    log: PathBuf,
+    pid: PathBuf,
+}
+
+impl Files {
+    fn new(folder: &Path, core: usize) -> Self {
+        let file = |extension| folder.join(format!("core-{core}.{extension}"));
+        Self {
+            boot: file("boot"),
+            log: file("log"),
+            pid: file("pid"),
+        }
+    }
 }
 
 /// Cores as QEMU processes. Dropping it kills them, by their ids.
 #[derive(Debug)]
 pub struct QemuFleet {
+    qemu: PathBuf,
     guests: Vec<Guest>,
     measured: Instant,
 }
@@ -64,41 +97,56 @@ impl QemuFleet {
     /// process's id in `core-N.pid`.
     pub fn start(qemu: &Path, cores: &[Core], folder: &Path) -> Result<Self, FleetError> {
         let mut fleet = Self {
+            qemu: qemu.to_owned(),
             guests: Vec::with_capacity(cores.len()),
             measured: Instant::now(),
         };
-        let failed = |path: &Path| {
-            let path = path.to_owned();
-            move |cause| FleetError::File { path, cause }
-        };
-        fs::create_dir_all(folder).map_err(failed(folder))?;
+        fs::create_dir_all(folder).map_err(unusable(folder))?;
         for (number, core) in cores.iter().enumerate() {
-            let file = |extension| folder.join(format!("core-{number}.{extension}"));
-            let (boot, log, pid) = (file("boot"), file("log"), file("pid"));
-            fs::write(&boot, &core.boot_block).map_err(failed(&boot))?;
-            let output = File::create(&log).map_err(failed(&log))?;
-            let errors = output.try_clone().map_err(failed(&log))?;
-            let mut command = bound_to_this_process(qemu);
-            command.args(core.board.command_line(&core.elf, Some(&boot)));
-            command.stdin(Stdio::null()).stdout(output).stderr(errors);
-            // Ctrl-C is for this process, which then ends its cores in order.
-            command.process_group(0);
-            let program = qemu.display().to_string();
-            let child = command.spawn().map_err(|cause| FleetError::Start {
-                core: number,
-                program,
-                cause,
-            })?;
-            let id = child.id();
-            fleet.guests.push(Guest {
+            let files = Files::new(folder, number);
+            fs::write(&files.boot, &core.boot_block).map_err(unusable(&files.boot))?;
+            fs::write(&files.log, []).map_err(unusable(&files.log))?;
+            let child = launch(qemu, number, core, &files)?;
+            let guest = Guest {
+                core: core.clone(),
+                files,
                 child,
-                log,
                 ended: None,
+                restarts: 0,
                 peak_memory: 0,
-            });
-            fs::write(&pid, format!("{id}\n")).map_err(failed(&pid))?;
+            };
+            // First of all it belongs to the fleet, which ends it, whatever goes wrong from here on.
+            fleet.guests.push(guest);
+            fleet.guests[number].note_process()?;
         }
         Ok(fleet)
+    }
+
+    /// Starts a core that has ended again, if its end leaves hope that the next life is longer.
+    ///
+    /// A core that has failed may have met with a rare accident, and is started with the same image and boot block, a few times:
+    /// its log goes on, and its process has a new id. Not so one that was killed, because somebody wanted that, nor one that gave
+    /// up by itself, for want of a network card or of a boot block that it understands: it would do so again.
+    pub(super) fn start_again(&mut self, core: u16) -> Result<bool, FleetError> {
+        let number = usize::from(core);
+        let Some(guest) = self.guests.get_mut(number) else {
+            return Ok(false);
+        };
+        let failed = |status: ExitStatus| status.code().is_some_and(|code| FAILED.contains(&code));
+        if guest.restarts == RESTARTS || !guest.ended.is_some_and(failed) {
+            return Ok(false);
+        }
+        guest.child = launch(&self.qemu, number, &guest.core, &guest.files)?;
+        guest.ended = None;
+        guest.restarts += 1;
+        guest.note_process()?;
+        Ok(true)
+    }
+
+    /// A core's image.
+    pub(super) fn image(&self, core: u16) -> Option<&Path> {
+        let guest = self.guests.get(usize::from(core))?;
+        Some(&guest.core.elf)
     }
 
     /// The ids of the processes, core by core.
@@ -150,11 +198,12 @@ impl QemuFleet {
         let Some(guest) = self.guests.get(usize::from(core)) else {
             return Vec::new();
         };
-        match tail(&guest.log) {
+        let log = &guest.files.log;
+        match tail(log) {
             Ok(lines) => lines,
             Err(error) => vec![format!(
                 "(its output in {} cannot be read: {error})",
-                guest.log.display()
+                log.display()
             )],
         }
     }
@@ -170,6 +219,30 @@ impl Drop for QemuFleet {
             let _status = guest.child.wait();
         }
     }
+}
+
+/// What becomes of an error at a core's file.
+fn unusable(path: &Path) -> impl FnOnce(io::Error) -> FleetError {
+    let path = path.to_owned();
+    move |cause| FleetError::File { path, cause }
+}
+
+/// Starts a core's process, whose console is added to its log.
+fn launch(qemu: &Path, number: usize, core: &Core, files: &Files) -> Result<Child, FleetError> {
+    let Files { boot, log, .. } = files;
+    let output = File::options().append(true).open(log).map_err(unusable(log))?;
+    let errors = output.try_clone().map_err(unusable(log))?;
+    let mut command = bound_to_this_process(qemu);
+    command.args(core.board.command_line(&core.elf, Some(boot)));
+    command.stdin(Stdio::null()).stdout(output).stderr(errors);
+    // Ctrl-C is for this process, which then ends its cores in order.
+    command.process_group(0);
+    let program = qemu.display().to_string();
+    command.spawn().map_err(|cause| FleetError::Start {
+        core: number,
+        program,
+        cause,
+    })
 }
 
 /// A command that the kernel kills when this process dies, even of SIGKILL, where util-linux's `setpriv` can arrange it.
@@ -202,19 +275,19 @@ fn tail(path: &Path) -> io::Result<Vec<String>> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use std::os::unix::fs::PermissionsExt;
 
     /// A program that takes QEMU's place.
-    fn fake_qemu(folder: &Path, script: &str) -> PathBuf {
+    pub(crate) fn fake_qemu(folder: &Path, script: &str) -> PathBuf {
         let path = folder.join("fake-qemu");
         fs::write(&path, format!("#!/bin/sh\n{script}\n")).expect("a script");
         fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).expect("an executable script");
         path
     }
 
-    fn cores<const N: usize>(boot_blocks: [u8; N]) -> [Core; N] {
+    pub(crate) fn cores<const N: usize>(boot_blocks: [u8; N]) -> [Core; N] {
         boot_blocks.map(|byte| Core {
             board: Board::Versatilepb,
             elf: "x.elf".into(),
@@ -252,6 +325,61 @@ mod tests {
             fs::read(folder.path().join("core-1.boot")).expect("a boot block"),
             [2]
         );
+    }
+
+    /// Starts a core that ends at once until it has done so `times` times, then starts it again as often as the fleet does.
+    fn lives(end: &str, times: u32) -> (QemuFleet, tempfile::TempDir, u32) {
+        let folder = tempfile::tempdir().expect("a folder");
+        let lives = folder.path().join("lives");
+        let script = format!(
+            "echo life; echo x >> {0}; [ $(wc -l < {0}) -gt {times} ] && exec sleep 60; {end}",
+            lives.display()
+        );
+        let qemu = fake_qemu(folder.path(), &script);
+        let mut fleet = QemuFleet::start(&qemu, &cores([1]), folder.path()).expect("it starts");
+        let mut restarts = 0;
+        while restarts < times && all_ended(&mut fleet, 1) == [0] && fleet.start_again(0).expect("it starts")
+        {
+            restarts += 1;
+        }
+        (fleet, folder, restarts)
+    }
+
+    #[test]
+    fn a_core_that_failed_is_started_again_with_its_files() {
+        for end in ["exit 3", "exit 4"] {
+            let (mut fleet, folder, restarts) = lives(end, 1);
+            assert_eq!(restarts, 1, "{end}");
+            assert_eq!(fleet.newly_ended(), [0_u16; 0]);
+            assert_eq!(fleet.how_ended(0), None);
+            let read = |name| fs::read_to_string(folder.path().join(name)).expect("a file");
+            assert_eq!(read("core-0.pid"), format!("{}\n", fleet.process_ids()[0]));
+            assert_eq!(read("core-0.boot"), "\u{1}");
+            let start = Instant::now();
+            while read("core-0.log") != "life\nlife\n" {
+                assert!(
+                    start.elapsed() < Duration::from_secs(10),
+                    "{}",
+                    read("core-0.log")
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_core_has_four_lives_at_most() {
+        let (fleet, _folder, restarts) = lives("exit 4", 10);
+        assert_eq!((restarts, fleet.guests[0].restarts), (3, RESTARTS));
+        assert_eq!(fleet.how_ended(0).as_deref(), Some("its QEMU ended with code 4"));
+    }
+
+    #[test]
+    fn a_core_that_was_killed_or_gave_up_is_not_started_again() {
+        for end in ["exit 0", "exit 1", "exit 2", "exit 127", "kill -KILL $$"] {
+            let (fleet, _folder, restarts) = lives(end, 10);
+            assert_eq!(restarts, 0, "{end}");
+            assert!(fleet.how_ended(0).is_some());
+        }
     }
 
     #[test]

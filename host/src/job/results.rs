@@ -12,7 +12,7 @@ use super::options::{Pixels, Reference};
 use super::{Job, JobError, Origin};
 use crate::arithmetic::Arithmetic;
 use crate::board::INSTRUCTIONS_PER_TICK;
-use crate::collector::{Collection, End};
+use crate::collector::{Collection, CoreRecord, End};
 use crate::compare::{Comparison, compare};
 use crate::picture::Estimate;
 use crate::reference::{self, cache};
@@ -177,7 +177,11 @@ impl Results<'_> {
             cost: self.cost(),
             error,
             lockstep_error: verdict.and_then(|verdict| verdict.lockstep),
-            per_core: self.collection.cores.iter().map(|core| self.core(core)).collect(),
+            per_core: {
+                let counts = self.origin.counts_instructions;
+                let cores = self.collection.cores.iter();
+                cores.map(|record| per_core(record, counts)).collect()
+            },
         }
     }
 
@@ -189,18 +193,6 @@ impl Results<'_> {
             instructions_per_sample: per_sample(instructions).filter(|_| self.origin.counts_instructions),
             cycles_per_sample: None,
             rays_per_sample: per_sample(self.collection.rays() as f64),
-        }
-    }
-
-    fn core(&self, record: &crate::collector::CoreRecord) -> report::Core {
-        let stack = record.farewell.filter(|farewell| farewell.stack_size > 0);
-        report::Core {
-            core: record.core,
-            units: record.units,
-            ticks: self.origin.counts_instructions.then_some(record.ticks),
-            stack_bytes: stack.map(|farewell| farewell.stack_used),
-            stack_size: stack.map(|farewell| farewell.stack_size),
-            fault: record.last_words.clone().or_else(|| record.ended.clone()),
         }
     }
 
@@ -281,6 +273,20 @@ impl Results<'_> {
         );
         line("sha256", report.image_sha256.clone());
         text.trim_end().to_owned()
+    }
+}
+
+/// A core's share of the report.
+pub(super) fn per_core(record: &CoreRecord, counts_instructions: bool) -> report::Core {
+    let stack = record.farewell.filter(|farewell| farewell.stack_size > 0);
+    report::Core {
+        core: record.core,
+        units: record.units,
+        ticks: counts_instructions.then_some(record.ticks),
+        stack_bytes: stack.map(|farewell| farewell.stack_used),
+        stack_size: stack.map(|farewell| farewell.stack_size),
+        restarts: record.restarts.len(),
+        fault: record.fault().map(str::to_owned),
     }
 }
 

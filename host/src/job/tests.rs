@@ -7,6 +7,7 @@ use clap::Parser;
 use serde_json::Value;
 
 use super::*;
+use crate::collector::CoreRecord;
 
 static RUNNING: AtomicBool = AtomicBool::new(false);
 static INTERRUPTED: AtomicBool = AtomicBool::new(true);
@@ -86,6 +87,23 @@ fn the_report_says_what_was_done_and_null_for_what_was_not_measured() {
     );
     assert!(out.path().join("image.png").is_file() && out.path().join("image.exr").is_file());
     assert!(!out.path().join("difference.png").exists());
+}
+
+#[test]
+fn the_report_says_of_each_core_what_went_wrong_last() {
+    let mut record = CoreRecord {
+        core: 2,
+        ..CoreRecord::default()
+    };
+    let said = |record: &CoreRecord| {
+        let core = results::per_core(record, true);
+        (core.restarts, core.fault)
+    };
+    assert_eq!(said(&record), (0, None));
+    record.restarts = vec!["panic".to_owned(), "undefined instruction".to_owned()];
+    assert_eq!(said(&record), (2, Some("undefined instruction".to_owned())));
+    record.ended = Some("killed".to_owned());
+    assert_eq!(said(&record), (2, Some("killed".to_owned())));
 }
 
 #[test]

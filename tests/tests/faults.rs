@@ -1,0 +1,112 @@
+//! Cores that fail: it is said where in the source, and the fleet goes on.
+
+use std::net::Ipv4Addr;
+use std::path::PathBuf;
+use std::sync::atomic::AtomicBool;
+
+use clap::Parser;
+use host::board::Board;
+use host::collector::{self, Collection, End, Progress};
+use host::firmware::build_examples;
+use host::fleet::{Core, Fleet, QemuFleet, RESTARTS, run_to_end};
+use host::job::options::RenderOptions;
+use host::job::{Job, boot_blocks};
+use host::session::Route;
+use host::symbols::Place;
+use tracer::profile::Precise;
+use whole_system::{cornell, film, plan, qemu, repository, toolchain};
+
+/// One of the boards' probes, built.
+fn probe(board: Board, name: &str) -> PathBuf {
+    let elfs = build_examples(&toolchain(), board, &[name.to_owned()]);
+    elfs.unwrap_or_else(|error| panic!("{error}")).remove(0)
+}
+
+/// The address that a core's last words name.
+fn address(words: &str) -> u32 {
+    let (_, after) = words.split_once(" at 0x").unwrap_or_else(|| panic!("{words}"));
+    u32::from_str_radix(&after[..8], 16).unwrap()
+}
+
+#[test]
+fn the_address_of_a_fault_is_one_of_the_probe_s_own_lines() {
+    for board in Board::ALL {
+        let elf = probe(board, "exception_probe");
+        let output = run_to_end(&qemu(), board, &elf).unwrap();
+        let said = String::from_utf8_lossy(&output.stdout).into_owned();
+        let place = Place::of(&elf, address(&said)).unwrap();
+        println!("{board}: {} is {place}", said.trim());
+        assert!(
+            place
+                .line
+                .is_some_and(|line| line.contains("exception_probe.rs:")),
+            "{said}"
+        );
+        assert_eq!(
+            Place::of(&elf, board.dtcm().start.try_into().unwrap()),
+            None,
+            "there is no code in data memory"
+        );
+    }
+}
+
+#[derive(Parser)]
+struct Flags {
+    #[command(flatten)]
+    options: RenderOptions,
+}
+
+/// Collects the Cornell box from cores with a probe instead of the image that the job would build.
+fn collected(board: Board, name: &str, flags: &str) -> Collection {
+    let elf = probe(board, name);
+    let (scene, out) = (repository("scenes/cornell.toml"), tempfile::tempdir().unwrap());
+    let words = [
+        "render",
+        scene.to_str().unwrap(),
+        "--out",
+        out.path().to_str().unwrap(),
+    ];
+    let options = Flags::parse_from(words.into_iter().chain(flags.split_whitespace())).options;
+    let session = Job::new(&options.picture).unwrap().session();
+    let socket = collector::bind(Ipv4Addr::LOCALHOST, 0).unwrap();
+    let route = Route::qemu(socket.local_addr().unwrap().port());
+    let core = |boot_block| Core {
+        board,
+        elf: elf.clone(),
+        boot_block,
+    };
+    let blocks = boot_blocks(&session, &route).unwrap();
+    let cores: Vec<Core> = blocks.into_iter().map(core).collect();
+    let mut fleet = Fleet::Qemu(QemuFleet::start(&qemu(), &cores, out.path()).unwrap());
+    let (running, mut progress) = (AtomicBool::new(false), Progress::Silent);
+    collector::collect(&session, &socket, &mut fleet, &running, &mut progress).unwrap()
+}
+
+#[test]
+fn a_core_that_fails_again_and_again_is_named_and_the_picture_is_complete_without_it() {
+    let expected = film::<Precise>(&cornell(), &plan::<Precise>(128, 96, 64)).sha256();
+    for board in Board::ALL {
+        let collection = collected(board, "failing_probe", "--size 128x96 --spp 64 --cores 3");
+        assert_eq!(collection.end, End::Complete);
+        assert_eq!(collection.film.sha256(), expected);
+        assert_eq!(collection.packets.lost, 0, "a new life is no loss");
+        let [failed, others @ ..] = &collection.cores[..] else {
+            panic!("no cores")
+        };
+        assert_eq!(failed.restarts.len(), RESTARTS);
+        assert!(failed.ended.is_some());
+        assert!(failed.units > 0, "what it did before it failed counts");
+        let fault = failed.fault().unwrap();
+        println!("{board}: {fault}");
+        for words in [
+            "undefined instruction at 0x",
+            "failing_probe::fail",
+            "failing_probe.rs:",
+        ] {
+            assert!(fault.contains(words), "{words} in: {fault}");
+        }
+        for core in others {
+            assert_eq!((core.fault(), core.restarts.len()), (None, 0));
+        }
+    }
+}
