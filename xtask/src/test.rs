@@ -26,6 +26,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
         qemu: true,
         firmware: true,
         lints: true,
+        gdb: true,
         ..Wanted::default()
     };
     let tools = step("set-up", || {

@@ -20,6 +20,17 @@ pub enum Install {
     Forbidden,
 }
 
+impl Install {
+    /// What the flag `--no-install` says.
+    pub fn unless(no_install: bool) -> Self {
+        if no_install {
+            Self::Forbidden
+        } else {
+            Self::Allowed
+        }
+    }
+}
+
 /// Why the needed programs are not there.
 #[derive(Debug, thiserror::Error)]
 pub enum SetupError {

@@ -16,6 +16,8 @@ pub struct Wanted {
     pub lints: bool,
     /// The battery of tests for random numbers.
     pub dieharder: bool,
+    /// The debugger of all boards.
+    pub gdb: bool,
 }
 
 /// A Rust compiler found on the machine, recent enough for this workspace.
@@ -62,6 +64,8 @@ pub struct Facts {
     pub qemu: Option<PathBuf>,
     /// `dieharder`.
     pub dieharder: Option<PathBuf>,
+    /// `gdb-multiarch`.
+    pub gdb: Option<PathBuf>,
     /// Compilers, the preferred one first.
     pub compilers: Vec<Compiler>,
     /// `rust-lld` or `ld.lld`.
@@ -83,6 +87,8 @@ pub struct Tools {
     pub qemu: Option<PathBuf>,
     /// The battery of tests for random numbers, where it was wanted.
     pub dieharder: Option<PathBuf>,
+    /// The debugger, where it was wanted.
+    pub gdb: Option<PathBuf>,
     /// What builds the firmware, where it was wanted.
     pub firmware: Option<Toolchain>,
 }
@@ -158,6 +164,7 @@ pub enum Plan {
 
 const QEMU: &str = "QEMU for Arm (qemu-system-arm)";
 const DIEHARDER: &str = "tests for random numbers (dieharder)";
+const GDB: &str = "a debugger for Arm (gdb-multiarch)";
 const SOURCE: &str = "a Rust compiler with the source of its library (rust-src)";
 const LINKER: &str = "a linker for the boards (rust-lld or ld.lld)";
 const RUSTFMT: &str = "cargo fmt";
@@ -171,7 +178,7 @@ struct Gap {
     packages: &'static [&'static str],
 }
 
-const GAPS: [Gap; 7] = [
+const GAPS: [Gap; 8] = [
     Gap {
         name: QEMU,
         component: None,
@@ -181,6 +188,11 @@ const GAPS: [Gap; 7] = [
         name: DIEHARDER,
         component: None,
         packages: &["dieharder"],
+    },
+    Gap {
+        name: GDB,
+        component: None,
+        packages: &["gdb-multiarch"],
     },
     Gap {
         name: SOURCE,
@@ -215,6 +227,7 @@ pub fn decide(facts: &Facts, wanted: Wanted) -> Plan {
     let lacks = |name| match name {
         QEMU => wanted.qemu && facts.qemu.is_none(),
         DIEHARDER => wanted.dieharder && facts.dieharder.is_none(),
+        GDB => wanted.gdb && facts.gdb.is_none(),
         SOURCE => wanted.firmware && with_source.is_none(),
         LINKER => wanted.firmware && facts.linker.is_none(),
         RUSTFMT => wanted.lints && !facts.rustfmt,
@@ -235,6 +248,7 @@ pub fn decide(facts: &Facts, wanted: Wanted) -> Plan {
     Plan::Ready(Tools {
         qemu: facts.qemu.clone().filter(|_| wanted.qemu),
         dieharder: facts.dieharder.clone().filter(|_| wanted.dieharder),
+        gdb: facts.gdb.clone().filter(|_| wanted.gdb),
         firmware,
     })
 }
@@ -267,8 +281,8 @@ fn fill(gaps: &[&Gap], facts: &Facts) -> Plan {
         }
         (false, Apt::Absent) => {
             let advice = "this is not a Debian, so install them with this system's own means: the programs \
-                          qemu-system-arm, ld.lld and dieharder in PATH, and the rustup components rust-src, rustfmt \
-                          and clippy";
+                          qemu-system-arm, gdb-multiarch, ld.lld and dieharder in PATH, and the rustup components \
+                          rust-src, rustfmt and clippy";
             return Plan::ByHand {
                 missing,
                 advice: advice.to_owned(),
@@ -301,6 +315,7 @@ mod tests {
         firmware: true,
         lints: true,
         dieharder: false,
+        gdb: false,
     };
 
     fn compiler(at: &str, has_source: bool) -> Compiler {
@@ -317,6 +332,7 @@ mod tests {
         Facts {
             qemu: None,
             dieharder: None,
+            gdb: None,
             compilers: vec![compiler("/rustup", false)],
             linker: Some("/rustup/rust-lld".into()),
             rustfmt: true,
@@ -392,6 +408,7 @@ mod tests {
             Plan::Ready(Tools {
                 qemu: None,
                 dieharder: None,
+                gdb: None,
                 firmware: None
             })
         );
@@ -409,6 +426,8 @@ mod tests {
             ..native
         };
         assert!(announced(&facts, battery).ends_with("--no-install-recommends dieharder"));
+        let debugger = Wanted { gdb: true, ..native };
+        assert!(announced(&facts, debugger).ends_with("--no-install-recommends gdb-multiarch"));
     }
 
     #[test]

@@ -26,6 +26,7 @@ pub fn survey() -> Facts {
     Facts {
         qemu: program("qemu-system-arm"),
         dieharder: program("dieharder"),
+        gdb: program("gdb-multiarch"),
         linker: sysroots
             .iter()
             .find_map(|sysroot| bundled_linker(sysroot))
