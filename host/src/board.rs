@@ -15,6 +15,9 @@ pub const DTCM_BUDGET: u64 = 0xF800;
 /// Instructions in a tick of the cores' clocks of 24 MHz, where an instruction is a nanosecond.
 pub const INSTRUCTIONS_PER_TICK: f64 = 1000.0 / 24.0;
 
+/// QEMU's name for the network that a board's card is in.
+const NETWORK: &str = "net";
+
 /// A board the firmware exists for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, clap::ValueEnum)]
 pub enum Board {
@@ -121,7 +124,7 @@ impl Board {
 
     fn command_line_in(self, network: &str, elf: &Path, boot: Option<&Path>) -> Vec<OsString> {
         let Traits { machine, card, .. } = self.traits();
-        let card = format!("{network},id=net,model={card}");
+        let card = format!("{network},id={NETWORK},model={card}");
         let shared = ["-nographic", "-semihosting", "-icount", "shift=0", "-nic", &card];
         let words = machine.iter().chain(&shared).map(OsString::from);
         let mut arguments: Vec<OsString> = words.collect();
@@ -133,6 +136,17 @@ impl Board {
         arguments.extend(["-kernel".into(), elf.into()]);
         arguments
     }
+}
+
+/// The words that make QEMU record the packets of a board's network card in `file`, as Wireshark reads them.
+pub fn capture_to(file: &Path) -> [OsString; 2] {
+    let dump = format!("filter-dump,id=capture,netdev={NETWORK},file={}", escaped(file));
+    ["-object".into(), dump.into()]
+}
+
+/// The words that make QEMU wait for a debugger on a TCP port of this host before the first instruction.
+pub fn wait_for_debugger(port: u16) -> [OsString; 3] {
+    ["-S".into(), "-gdb".into(), format!("tcp:127.0.0.1:{port}").into()]
 }
 
 /// A path as the value of one of QEMU's options, which ends at a comma unless that is doubled.
@@ -162,6 +176,8 @@ mod tests {
             Board::Versatilepb.command_line(Path::new("image.elf"), Some(Path::new("a,b/core-0.boot")));
         let loader = OsString::from("loader,addr=0x400000,file=a,,b/core-0.boot,force-raw=on");
         assert!(words.contains(&loader), "{words:?}");
+        let dump = "filter-dump,id=capture,netdev=net,file=a,,b/core-0.pcap";
+        assert_eq!(capture_to(Path::new("a,b/core-0.pcap"))[1], dump);
     }
 
     #[test]

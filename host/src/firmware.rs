@@ -6,7 +6,7 @@
 
 use std::ffi::OsString;
 use std::fs::{self, File};
-use std::io;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::{env, fmt};
@@ -16,6 +16,7 @@ use serde::Serialize;
 
 use crate::arithmetic::Arithmetic;
 use crate::board::{Board, DTCM_BUDGET, ITCM_BUDGET};
+use crate::file::write_whole;
 use crate::scene::SceneNeeds;
 use crate::setup::Toolchain;
 
@@ -163,9 +164,11 @@ pub fn build(toolchain: &Toolchain, board: Board, recipe: &Recipe) -> Result<Ima
     }
     let built = folder.join(board.target()).join("firmware").join(board.name());
     let elf = images.join(recipe.file_name(board));
-    fs::copy(&built, &elf).map_err(failed(&built))?;
+    let bytes = fs::read(&built).map_err(failed(&built))?;
     drop(lock);
-    let bytes = fs::read(&elf).map_err(failed(&elf))?;
+    // An emulator or a debugger may just be reading the image that is there.
+    write_whole(&elf, |file| file.write_all(&bytes))
+        .map_err(|error| failed(&elf)(io::Error::other(error.cause)))?;
     let size = measure(board, &bytes).map_err(|cause| FirmwareError::Elf {
         path: elf.clone(),
         cause,
@@ -294,6 +297,20 @@ pub fn board_of(elf: &[u8]) -> Result<Board, String> {
     boards
         .find(|board| Some(board.dtcm().start) == boot_block)
         .ok_or_else(|| "it has no boot block where a board of ours looks for one".to_owned())
+}
+
+/// The symbol of an image's first line of Rust: the one that its start-up crate calls when memory is in order.
+pub fn entry(elf: &Path) -> Result<&'static str, FirmwareError> {
+    /// Of `cortex-m-rt`, and of `aarch32-rt`.
+    const NAMES: [&str; 2] = ["main", "kmain"];
+    let failed = |cause: String| FirmwareError::Elf {
+        path: elf.to_owned(),
+        cause,
+    };
+    let bytes = fs::read(elf).map_err(|error| failed(error.to_string()))?;
+    let file = object::File::parse(&bytes[..]).map_err(|error| failed(error.to_string()))?;
+    let found = NAMES.into_iter().find(|name| file.symbol_by_name(name).is_some());
+    found.ok_or_else(|| failed(format!("it has no symbol {}", NAMES.join(" or "))))
 }
 
 /// Measures a board's ELF file. What takes memory of a core is what is loaded there and what its sections reserve.
@@ -448,8 +465,12 @@ mod tests {
     #[test]
     fn what_is_no_elf_is_refused() {
         assert!(measure(Board::Versatilepb, b"no ELF at all").is_err());
-        // This test's own program is an ELF, but no image.
-        let own = fs::read(std::env::current_exe().expect("a program")).expect("its bytes");
+        let missing = entry(Path::new("no-such.elf")).expect_err("there is no such file");
+        assert!(missing.to_string().contains("no-such.elf"), "{missing}");
+        // This test's own program is an ELF with a `main`, but no image.
+        let own = std::env::current_exe().expect("a program");
+        assert_eq!(entry(&own).expect("an ELF"), "main");
+        let own = fs::read(own).expect("its bytes");
         assert!(
             measure(Board::Versatilepb, &own)
                 .expect_err("not an image")

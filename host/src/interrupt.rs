@@ -16,3 +16,8 @@ pub fn watch() -> Result<&'static AtomicBool, ctrlc::Error> {
     })?;
     Ok(&INTERRUPTED)
 }
+
+/// From now on an interruption is left to the child that has the terminal, and means nothing here.
+pub fn leave_to_child() -> Result<(), ctrlc::Error> {
+    ctrlc::set_handler(|| ())
+}

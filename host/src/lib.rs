@@ -3,11 +3,12 @@
 //! In the order of a render: [`scene`] reads and compiles, [`setup`] and [`firmware`] build the image, [`fleet`] starts the
 //! cores of a [`session`], [`collector`] gathers their pixels on a [`film`], [`reference`](mod@reference) and [`lockstep`] say what
 //! they should have been, [`compare`] and [`difference`] how far off they are, and [`report`] writes it down. [`job`] is
-//! all of that in one call. [`generators`] judges the random numbers by themselves, and [`mod@operations`] is the price list
-//! of the arithmetic.
+//! all of that in one call. [`capture`] reads the packets that a core's emulator recorded. [`generators`] judges the random
+//! numbers by themselves, and [`mod@operations`] is the price list of the arithmetic.
 
 pub mod arithmetic;
 pub mod board;
+pub mod capture;
 pub mod collector;
 pub mod compare;
 pub mod difference;

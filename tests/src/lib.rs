@@ -1,9 +1,12 @@
-//! What the whole-system tests share: the standard scene, and its picture without a fleet in between.
+//! What the whole-system tests share: the standard scene, its picture without a fleet in between, and the programs.
 
 use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::sync::OnceLock;
 
 use host::direct;
 use host::film::Film;
+use host::firmware;
 use host::picture::Estimate;
 use host::scene::{Scene, compile};
 use host::setup::{self, Install, Toolchain, Wanted};
@@ -78,4 +81,51 @@ pub fn qemu() -> PathBuf {
     };
     let tools = setup::ensure(wanted, Install::Forbidden).unwrap_or_else(|error| panic!("{error}"));
     tools.qemu.expect("set-up gives what is wanted")
+}
+
+/// One of the workspace's programs, built as users build it.
+///
+/// # Panics
+/// If it does not build.
+pub fn program(name: &str) -> PathBuf {
+    static BUILT: OnceLock<PathBuf> = OnceLock::new();
+    let folder = BUILT.get_or_init(|| {
+        let mut cargo = Command::new(env!("CARGO"));
+        cargo.args([
+            "build",
+            "--quiet",
+            "--release",
+            "--package",
+            "xtask",
+            "--package",
+            "host",
+        ]);
+        let status = cargo
+            .current_dir(firmware::workspace())
+            .status()
+            .expect("cargo starts");
+        assert!(status.success(), "the programs do not build");
+        firmware::target_folder()
+            .parent()
+            .expect("it is in the target folder")
+            .join("release")
+    });
+    folder.join(name)
+}
+
+/// A command of the project's; what it says is kept.
+pub fn xtask(arguments: &[&str]) -> Command {
+    let mut command = Command::new(program("xtask"));
+    command.args(arguments).current_dir(firmware::workspace());
+    command
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped());
+    command
+}
+
+/// What a program said, in whichever way.
+pub fn said(output: &Output) -> String {
+    let text = [&output.stdout, &output.stderr].map(|bytes| String::from_utf8_lossy(bytes).into_owned());
+    text.concat()
 }

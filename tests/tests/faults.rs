@@ -70,13 +70,10 @@ fn collected(board: Board, name: &str, flags: &str) -> Collection {
     let session = Job::new(&options.picture).unwrap().session();
     let socket = collector::bind(Ipv4Addr::LOCALHOST, 0).unwrap();
     let route = Route::qemu(socket.local_addr().unwrap().port());
-    let core = |boot_block| Core {
-        board,
-        elf: elf.clone(),
-        boot_block,
-    };
-    let blocks = boot_blocks(&session, &route).unwrap();
-    let cores: Vec<Core> = blocks.into_iter().map(core).collect();
+    let blocks = (0..).zip(boot_blocks(&session, &route).unwrap());
+    let cores: Vec<Core> = blocks
+        .map(|(number, block)| Core::new(number, board, &elf, block))
+        .collect();
     let mut fleet = Fleet::Qemu(QemuFleet::start(&qemu(), &cores, out.path()).unwrap());
     let (running, mut progress) = (AtomicBool::new(false), Progress::Silent);
     collector::collect(&session, &socket, &mut fleet, &running, &mut progress).unwrap()

@@ -1,9 +1,8 @@
 //! The programs as processes: signals reach them, cores end with them, exit codes pass through them, cores from elsewhere join.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Command, Output, Stdio};
-use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
 use host::arithmetic::Arithmetic;
@@ -12,7 +11,7 @@ use host::firmware::{self, Recipe};
 use host::scene::SceneNeeds;
 use serde_json::Value;
 use tempfile::TempDir;
-use whole_system::toolchain;
+use whole_system::{program, said, toolchain, xtask};
 
 /// A picture that takes an emulated core a moment.
 const SMALL: [&str; 6] = ["--size", "64x48", "--spp", "16", "--reference", "none"];
@@ -28,52 +27,10 @@ const LONG: [&str; 8] = [
     "2",
 ];
 
-/// One of the workspace's programs, built as users build it.
-fn program(name: &str) -> PathBuf {
-    static BUILT: OnceLock<PathBuf> = OnceLock::new();
-    let folder = BUILT.get_or_init(|| {
-        let mut cargo = Command::new(env!("CARGO"));
-        cargo.args([
-            "build",
-            "--quiet",
-            "--release",
-            "--package",
-            "xtask",
-            "--package",
-            "host",
-        ]);
-        let status = cargo
-            .current_dir(firmware::workspace())
-            .status()
-            .expect("cargo starts");
-        assert!(status.success(), "the programs do not build");
-        firmware::target_folder()
-            .parent()
-            .expect("it is in the target folder")
-            .join("release")
-    });
-    folder.join(name)
-}
-
-fn xtask(arguments: &[&str]) -> Command {
-    let mut command = Command::new(program("xtask"));
-    command.args(arguments).current_dir(firmware::workspace());
-    command
-        .stdin(Stdio::null())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped());
-    command
-}
-
 fn render(out: &Path, arguments: &[&[&str]]) -> Command {
     let mut command = xtask(&["render"]);
     command.args(arguments.concat()).arg("--out").arg(out);
     command
-}
-
-fn said(output: &Output) -> String {
-    let text = [&output.stdout, &output.stderr].map(|bytes| String::from_utf8_lossy(bytes).into_owned());
-    text.concat()
 }
 
 fn report(out: &Path) -> Value {

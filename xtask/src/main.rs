@@ -1,11 +1,13 @@
 //! The project's commands. Thin: each verb is one file, and what a test needs to reach is in the host library.
 
 mod bench;
+mod gdb;
 mod qemu_run;
 mod render;
 mod size;
 mod test;
 mod toolchain;
+mod trace;
 mod verify;
 
 use std::process::ExitCode;
@@ -30,6 +32,17 @@ enum Verb {
     ///
     /// As in: eval "$(cargo xtask toolchain)"; cd firmware/mps2-an385; cargo run --example core_tests
     Toolchain(toolchain::Arguments),
+    /// Start one core of a render under a debugger, which takes it to `main`
+    ///
+    /// Builds the image the scene needs and starts core N alone; a collector stands ready to lease it work, and waits for it
+    /// as long as it stands still. The core's console is gdb/core-N.log in the folder for the results. Ends with gdb. Words
+    /// after `--` go to gdb: `-- --batch -ex backtrace`.
+    Gdb(gdb::Arguments),
+    /// Render a picture and record the packets of one core, as Wireshark reads them
+    ///
+    /// Writes core-N.pcap beside what `render` writes (core-N.2.pcap and so on, where the core was started again), and says how
+    /// many packets of each command went each way. docs/sdp.lua shows Wireshark their fields.
+    Trace(trace::Arguments),
     /// Print each image's bytes of code, data and stack against the budget
     Size(size::Arguments),
     /// Measure parts by themselves
@@ -52,11 +65,7 @@ struct SetUp {
 
 impl SetUp {
     fn install(&self) -> Install {
-        if self.no_install {
-            Install::Forbidden
-        } else {
-            Install::Allowed
-        }
+        Install::unless(self.no_install)
     }
 }
 
@@ -77,6 +86,8 @@ fn main() -> ExitCode {
         Verb::Test(arguments) => test::run(&arguments),
         Verb::QemuRun(arguments) => qemu_run::run(&arguments),
         Verb::Toolchain(arguments) => toolchain::run(&arguments),
+        Verb::Gdb(arguments) => gdb::run(&arguments),
+        Verb::Trace(arguments) => trace::run(&arguments),
         Verb::Size(arguments) => size::run(&arguments),
         Verb::Bench(bench) => bench::run(&bench),
         Verb::Verify(arguments) => verify::run(&arguments),

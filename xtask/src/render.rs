@@ -14,8 +14,12 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
-    let interrupted = interrupt::watch()?;
-    match job::render(&arguments.options, interrupted) {
+    outcome(job::render(&arguments.options, interrupt::watch()?))
+}
+
+/// The exit code of a render.
+pub(crate) fn outcome(end: Result<(), JobError>) -> anyhow::Result<ExitCode> {
+    match end {
         Ok(()) => Ok(ExitCode::SUCCESS),
         Err(error @ JobError::Interrupted(_)) => {
             eprintln!("error: {error}");

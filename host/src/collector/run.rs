@@ -349,8 +349,7 @@ impl<'a> Run<'a> {
         let heard = self.cores.iter().filter_map(|core| core.heard).max();
         let since = self.now().saturating_sub(heard.unwrap_or_default());
         let all_ended = self.cores.iter().all(|core| core.ended.is_some());
-        // Cores that somebody starts by hand may take any time before they are first heard.
-        let silent = since >= SILENCE && (heard.is_some() || !self.fleet.is_elsewhere());
+        let silent = since >= SILENCE && !self.fleet.may_be_silent(heard.is_some());
         if !all_ended && !silent {
             return None;
         }

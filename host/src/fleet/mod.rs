@@ -4,9 +4,10 @@ mod native;
 mod qemu;
 
 pub use native::NativeFleet;
+pub(crate) use qemu::bound_to_this_process;
 #[cfg(test)]
 pub(crate) use qemu::tests::{cores, fake_qemu};
-pub use qemu::{Core, QemuFleet, run_to_end, run_with_peer};
+pub use qemu::{Core, QemuFleet, capture_of, run_to_end, run_with_peer};
 
 use crate::symbols::Place;
 
@@ -31,7 +32,7 @@ pub enum FleetError {
     #[error("core {core}: cannot start {program}: {cause}")]
     Start {
         /// The core.
-        core: usize,
+        core: u16,
         /// The program.
         program: String,
         /// What the system said.
@@ -44,6 +45,8 @@ pub enum FleetError {
 pub enum Fleet {
     /// One QEMU process a core.
     Qemu(QemuFleet),
+    /// The same under a debugger, which may make it stand still for any time.
+    Debugged(QemuFleet),
     /// One thread of this host a core.
     Native(NativeFleet),
     /// Somebody else starts and ends them.
@@ -54,7 +57,7 @@ impl Fleet {
     /// Cores that ended since the last call.
     pub fn newly_ended(&mut self) -> Vec<u16> {
         match self {
-            Self::Qemu(fleet) => fleet.newly_ended(),
+            Self::Qemu(fleet) | Self::Debugged(fleet) => fleet.newly_ended(),
             Self::Native(fleet) => fleet.newly_ended(),
             Self::Elsewhere => Vec::new(),
         }
@@ -63,7 +66,7 @@ impl Fleet {
     /// What is known about the end of a core, in words.
     pub fn how_ended(&self, core: u16) -> String {
         let known = match self {
-            Self::Qemu(fleet) => fleet.how_ended(core),
+            Self::Qemu(fleet) | Self::Debugged(fleet) => fleet.how_ended(core),
             Self::Native(fleet) => fleet.how_ended(core),
             Self::Elsewhere => return "started elsewhere".to_owned(),
         };
@@ -72,11 +75,12 @@ impl Fleet {
 
     /// Starts a core that has ended again, where that may help, and says whether it did.
     ///
-    /// A thread of this host is not started again, as it runs the very program that looks after it.
+    /// A thread of this host is not started again, as it runs the very program that looks after it; nor is a core under a debugger,
+    /// whose end somebody looks at.
     pub fn start_again(&mut self, core: u16) -> Result<bool, FleetError> {
         match self {
             Self::Qemu(fleet) => fleet.start_again(core),
-            Self::Native(_) | Self::Elsewhere => Ok(false),
+            Self::Debugged(_) | Self::Native(_) | Self::Elsewhere => Ok(false),
         }
     }
 
@@ -88,7 +92,7 @@ impl Fleet {
     /// Where in the source of a core's image an address is.
     pub fn place(&self, core: u16, address: u32) -> Option<Place> {
         match self {
-            Self::Qemu(fleet) => Place::of(fleet.image(core)?, address),
+            Self::Qemu(fleet) | Self::Debugged(fleet) => Place::of(fleet.image(core)?, address),
             Self::Native(_) | Self::Elsewhere => None,
         }
     }
@@ -96,7 +100,7 @@ impl Fleet {
     /// The last lines that a core wrote on its console.
     pub fn last_output(&self, core: u16) -> Vec<String> {
         match self {
-            Self::Qemu(fleet) => fleet.last_output(core),
+            Self::Qemu(fleet) | Self::Debugged(fleet) => fleet.last_output(core),
             Self::Native(_) | Self::Elsewhere => Vec::new(),
         }
     }
@@ -104,13 +108,18 @@ impl Fleet {
     /// The sum of the peak memory of the cores' own processes, in bytes.
     pub fn peak_memory(&self) -> u64 {
         match self {
-            Self::Qemu(fleet) => fleet.peak_memory(),
+            Self::Qemu(fleet) | Self::Debugged(fleet) => fleet.peak_memory(),
             Self::Native(_) | Self::Elsewhere => 0,
         }
     }
 
-    /// Whether somebody else starts the cores, at any time.
-    pub fn is_elsewhere(&self) -> bool {
-        matches!(self, Self::Elsewhere)
+    /// Whether it means nothing that no core says a word; `heard` says whether any ever did.
+    pub fn may_be_silent(&self, heard: bool) -> bool {
+        match self {
+            Self::Qemu(_) | Self::Native(_) => false,
+            Self::Debugged(_) => true,
+            // Cores that somebody starts by hand may take any time before they are first heard.
+            Self::Elsewhere => !heard,
+        }
     }
 }

@@ -37,7 +37,7 @@ impl NativeFleet {
             cores: Vec::with_capacity(boot_blocks.len()),
             stop: Arc::default(),
         };
-        for (core, block) in boot_blocks.iter().enumerate() {
+        for (core, block) in (0..).zip(boot_blocks) {
             let (block, stop) = (block.clone(), Arc::clone(&fleet.stop));
             let spawned = thread::Builder::new()
                 .name(format!("core {core}"))

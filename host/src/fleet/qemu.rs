@@ -1,5 +1,6 @@
 //! Cores as QEMU processes.
 
+use std::ffi::OsString;
 use std::fs::{self, File};
 use std::io::{self, Read, Seek, SeekFrom};
 use std::os::unix::process::{CommandExt, ExitStatusExt};
@@ -8,7 +9,7 @@ use std::process::{Child, Command, ExitStatus, Output, Stdio};
 use std::time::{Duration, Instant};
 
 use super::{FleetError, LAST_LINES, RESTARTS};
-use crate::board::Board;
+use crate::board::{self, Board};
 use crate::{memory, setup};
 
 /// Time between two looks at the processes' memory, which nobody can ask for once they have ended.
@@ -38,12 +39,51 @@ pub fn run_with_peer(qemu: &Path, board: Board, elf: &Path, core: u16, peer: u16
 /// A core to be started.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Core {
+    /// Its number in the session.
+    pub number: u16,
     /// The board it is on.
     pub board: Board,
     /// Its image.
     pub elf: PathBuf,
     /// Its boot block.
     pub boot_block: Vec<u8>,
+    /// Where its packets are recorded, if anywhere; those of later lives beside it, see [`capture_of`].
+    pub capture: Option<PathBuf>,
+    /// The TCP port on which it waits for a debugger before its first instruction, if for any.
+    pub debugger: Option<u16>,
+}
+
+impl Core {
+    /// A core that nobody looks into.
+    pub fn new(number: u16, board: Board, elf: &Path, boot_block: Vec<u8>) -> Self {
+        Self {
+            number,
+            board,
+            elf: elf.to_owned(),
+            boot_block,
+            capture: None,
+            debugger: None,
+        }
+    }
+
+    /// QEMU's arguments for it, with its boot block in file `boot`.
+    fn command_line(&self, boot: &Path, restarts: usize) -> Vec<OsString> {
+        let mut words = self.board.command_line(&self.elf, Some(boot));
+        if let Some(first) = &self.capture {
+            words.extend(board::capture_to(&capture_of(first, restarts)));
+        }
+        words.extend(self.debugger.into_iter().flat_map(board::wait_for_debugger));
+        words
+    }
+}
+
+/// The capture file of a core that has been started again so many times, if `first` is that of its first life. QEMU begins a file
+/// anew, and the earlier packets are worth keeping.
+pub fn capture_of(first: &Path, restarts: usize) -> PathBuf {
+    match restarts {
+        0 => first.to_owned(),
+        _ => first.with_extension(format!("{}.pcap", restarts + 1)),
+    }
 }
 
 /// One emulated core.
@@ -74,7 +114,7 @@ struct Files {
 }
 
 impl Files {
-    fn new(folder: &Path, core: usize) -> Self {
+    fn new(folder: &Path, core: u16) -> Self {
         let file = |extension| folder.join(format!("core-{core}.{extension}"));
         Self {
             boot: file("boot"),
@@ -102,11 +142,11 @@ impl QemuFleet {
             measured: Instant::now(),
         };
         fs::create_dir_all(folder).map_err(unusable(folder))?;
-        for (number, core) in cores.iter().enumerate() {
-            let files = Files::new(folder, number);
+        for core in cores {
+            let files = Files::new(folder, core.number);
             fs::write(&files.boot, &core.boot_block).map_err(unusable(&files.boot))?;
             fs::write(&files.log, []).map_err(unusable(&files.log))?;
-            let child = launch(qemu, number, core, &files)?;
+            let child = launch(qemu, core, &files, 0)?;
             let guest = Guest {
                 core: core.clone(),
                 files,
@@ -117,7 +157,7 @@ impl QemuFleet {
             };
             // First of all it belongs to the fleet, which ends it, whatever goes wrong from here on.
             fleet.guests.push(guest);
-            fleet.guests[number].note_process()?;
+            fleet.guests.last().map_or(Ok(()), Guest::note_process)?;
         }
         Ok(fleet)
     }
@@ -128,15 +168,14 @@ impl QemuFleet {
     /// its log goes on, and its process has a new id. Not so one that was killed, because somebody wanted that, nor one that gave
     /// up by itself, for want of a network card or of a boot block that it understands: it would do so again.
     pub(super) fn start_again(&mut self, core: u16) -> Result<bool, FleetError> {
-        let number = usize::from(core);
-        let Some(guest) = self.guests.get_mut(number) else {
+        let Some(guest) = self.guests.iter_mut().find(|guest| guest.core.number == core) else {
             return Ok(false);
         };
         let failed = |status: ExitStatus| status.code().is_some_and(|code| FAILED.contains(&code));
         if guest.restarts == RESTARTS || !guest.ended.is_some_and(failed) {
             return Ok(false);
         }
-        guest.child = launch(&self.qemu, number, &guest.core, &guest.files)?;
+        guest.child = launch(&self.qemu, &guest.core, &guest.files, guest.restarts + 1)?;
         guest.ended = None;
         guest.restarts += 1;
         guest.note_process()?;
@@ -145,8 +184,11 @@ impl QemuFleet {
 
     /// A core's image.
     pub(super) fn image(&self, core: u16) -> Option<&Path> {
-        let guest = self.guests.get(usize::from(core))?;
-        Some(&guest.core.elf)
+        Some(&self.guest(core)?.core.elf)
+    }
+
+    fn guest(&self, core: u16) -> Option<&Guest> {
+        self.guests.iter().find(|guest| guest.core.number == core)
     }
 
     /// The ids of the processes, core by core.
@@ -173,20 +215,20 @@ impl QemuFleet {
     pub(super) fn newly_ended(&mut self) -> Vec<u16> {
         self.measure();
         let mut ended = Vec::new();
-        for (core, guest) in self.guests.iter_mut().enumerate() {
+        for guest in &mut self.guests {
             // An error means that the process cannot be asked; silence will tell.
             if guest.ended.is_none()
                 && let Ok(Some(status)) = guest.child.try_wait()
             {
                 guest.ended = Some(status);
-                ended.extend(u16::try_from(core));
+                ended.push(guest.core.number);
             }
         }
         ended
     }
 
     pub(super) fn how_ended(&self, core: u16) -> Option<String> {
-        let status = self.guests.get(usize::from(core))?.ended?;
+        let status = self.guest(core)?.ended?;
         Some(match (status.code(), status.signal()) {
             (Some(code), _) => format!("its QEMU ended with code {code}"),
             (None, Some(signal)) => format!("its QEMU was killed by signal {signal}"),
@@ -195,7 +237,7 @@ impl QemuFleet {
     }
 
     pub(super) fn last_output(&self, core: u16) -> Vec<String> {
-        let Some(guest) = self.guests.get(usize::from(core)) else {
+        let Some(guest) = self.guest(core) else {
             return Vec::new();
         };
         let log = &guest.files.log;
@@ -228,25 +270,25 @@ fn unusable(path: &Path) -> impl FnOnce(io::Error) -> FleetError {
 }
 
 /// Starts a core's process, whose console is added to its log.
-fn launch(qemu: &Path, number: usize, core: &Core, files: &Files) -> Result<Child, FleetError> {
+fn launch(qemu: &Path, core: &Core, files: &Files, restarts: usize) -> Result<Child, FleetError> {
     let Files { boot, log, .. } = files;
     let output = File::options().append(true).open(log).map_err(unusable(log))?;
     let errors = output.try_clone().map_err(unusable(log))?;
     let mut command = bound_to_this_process(qemu);
-    command.args(core.board.command_line(&core.elf, Some(boot)));
+    command.args(core.command_line(boot, restarts));
     command.stdin(Stdio::null()).stdout(output).stderr(errors);
     // Ctrl-C is for this process, which then ends its cores in order.
     command.process_group(0);
     let program = qemu.display().to_string();
     command.spawn().map_err(|cause| FleetError::Start {
-        core: number,
+        core: core.number,
         program,
         cause,
     })
 }
 
 /// A command that the kernel kills when this process dies, even of SIGKILL, where util-linux's `setpriv` can arrange it.
-fn bound_to_this_process(program: &Path) -> Command {
+pub(crate) fn bound_to_this_process(program: &Path) -> Command {
     match setup::program("setpriv") {
         Some(setpriv) => {
             let mut command = Command::new(setpriv);
@@ -287,11 +329,12 @@ pub(super) mod tests {
         path
     }
 
+    /// Cores from number 0 on, with boot blocks of a byte each.
     pub(crate) fn cores<const N: usize>(boot_blocks: [u8; N]) -> [Core; N] {
-        boot_blocks.map(|byte| Core {
-            board: Board::Versatilepb,
-            elf: "x.elf".into(),
-            boot_block: vec![byte],
+        let (mut numbers, elf) = (0.., Path::new("x.elf"));
+        boot_blocks.map(|byte| {
+            let number = numbers.next().expect("they do not end");
+            Core::new(number, Board::Versatilepb, elf, vec![byte])
         })
     }
 
@@ -364,6 +407,30 @@ pub(super) mod tests {
                 );
             }
         }
+    }
+
+    #[test]
+    fn a_core_is_known_by_its_number_and_every_life_of_it_is_recorded() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let qemu = fake_qemu(folder.path(), "echo $*; exit 3");
+        let [mut core] = cores([1]);
+        (core.number, core.capture) = (7, Some(folder.path().join("core-7.pcap")));
+        core.debugger = Some(1234);
+        let mut fleet = QemuFleet::start(&qemu, &[core], folder.path()).expect("it starts");
+        assert_eq!(all_ended(&mut fleet, 1), [7]);
+        assert!(fleet.start_again(7).expect("it starts"));
+        assert_eq!(all_ended(&mut fleet, 1), [7]);
+        let lives = fleet.last_output(7);
+        assert!(
+            lives[0].contains("core-7.pcap") && lives[1].contains("core-7.2.pcap"),
+            "{lives:?}"
+        );
+        assert!(
+            lives
+                .iter()
+                .all(|line| line.ends_with("-S -gdb tcp:127.0.0.1:1234")),
+            "{lives:?}"
+        );
     }
 
     #[test]

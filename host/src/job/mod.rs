@@ -4,8 +4,10 @@
 //! results, the reference file, the port, the programs that are needed. Then the image is built, the fleet started
 //! and the picture collected; then it is judged and written.
 
+mod debug;
 pub mod options;
 mod results;
+mod trace;
 
 use std::net::{Ipv4Addr, UdpSocket};
 use std::path::{Path, PathBuf};
@@ -16,6 +18,7 @@ use tracer::unit::Termination;
 use wire::Name;
 
 use crate::board::Board;
+use crate::capture::CaptureError;
 use crate::collector::{self, BindError, CollectError, Collection, End, Progress};
 use crate::compare::CompareError;
 use crate::file::WriteError;
@@ -26,8 +29,11 @@ use crate::openexr::{self, ReadError};
 use crate::picture::Estimate;
 use crate::scene::{CompiledScene, Scene, SceneError, compile};
 use crate::session::{Route, Session};
-use crate::setup::{self, Install, SetupError, Tools, Wanted};
+use crate::setup::{self, Install, SetupError, Toolchain, Tools, Wanted};
 use options::{Backend, PictureOptions, Reference, RenderOptions};
+
+pub use debug::{DebugOptions, debug};
+pub use trace::{TraceOptions, trace};
 
 /// Why there is no complete picture.
 #[derive(Debug, thiserror::Error)]
@@ -73,6 +79,29 @@ pub enum JobError {
     /// A result could not be written.
     #[error(transparent)]
     Write(#[from] WriteError),
+    /// A core that the session does not have.
+    #[error("there is no core {core}: {cores} cores are numbered 0 to {last}; choose another --core, or more --cores",
+        last = cores - 1)]
+    NoSuchCore {
+        /// The core asked for.
+        core: u16,
+        /// The session's cores.
+        cores: u16,
+    },
+    /// Threads have no network card whose packets could be recorded.
+    #[error("a core's packets can only be recorded in QEMU: leave out --backend native")]
+    NoNetwork,
+    /// The recorded packets could not be read.
+    #[error(transparent)]
+    Capture(#[from] CaptureError),
+    /// The debugger could not be run.
+    #[error("cannot run {}: {cause}", program.display())]
+    Debugger {
+        /// The program.
+        program: PathBuf,
+        /// What the system said.
+        cause: std::io::Error,
+    },
     /// The cores are gone.
     #[error("{why}\n{kept}")]
     Deserted {
@@ -240,80 +269,107 @@ impl Job {
 
 /// Renders a picture on cores of this host.
 pub fn render(options: &RenderOptions, interrupted: &AtomicBool) -> Result<(), JobError> {
-    let job = Job::new(&options.picture)?;
-    let socket = collector::bind(Ipv4Addr::LOCALHOST, options.port.unwrap_or(0))?;
-    let port = socket.local_addr().map_err(CollectError::Socket)?.port();
-    let session = job.session();
-    let emulated = options.backend == Backend::Qemu;
-    let wanted = Wanted {
-        qemu: emulated,
-        firmware: emulated,
-        ..Wanted::default()
-    };
-    let install = if options.no_install {
-        Install::Forbidden
-    } else {
-        Install::Allowed
-    };
-    let tools = setup::ensure(wanted, install)?;
-    let images = job.build(&tools, &options.boards)?;
-    let route = if emulated {
-        Route::qemu(port)
-    } else {
-        Route::loopback(port)
-    };
-    let blocks = boot_blocks(&session, &route)?;
-    let start = Instant::now();
-    let (fleet, origin) = match &tools.qemu {
-        Some(qemu) => {
-            let turns = images.iter().cycle().zip(blocks);
-            let cores: Vec<Core> = turns
-                .map(|((board, elf), boot_block)| Core {
-                    board: *board,
-                    elf: elf.clone(),
-                    boot_block,
-                })
-                .collect();
-            let fleet = QemuFleet::start(qemu, &cores, &job.out.join("cores"))?;
-            let origin = Origin {
-                backend: "qemu",
-                boards: options.boards.clone(),
-                counts_instructions: true,
-            };
-            (Fleet::Qemu(fleet), origin)
-        }
-        None => {
-            let fleet = NativeFleet::start(&blocks, options.picture.profile)?;
-            let origin = Origin {
-                backend: "native",
-                boards: Vec::new(),
-                counts_instructions: false,
-            };
-            (Fleet::Native(fleet), origin)
-        }
-    };
-    job.collect(&session, &socket, fleet, origin, start, interrupted)
+    Job::new(&options.picture)?.render(options, None, interrupted)
+}
+
+/// Whose packets are to be recorded, and where.
+struct Capture {
+    core: u16,
+    file: PathBuf,
 }
 
 impl Job {
+    fn render(
+        &self,
+        options: &RenderOptions,
+        capture: Option<&Capture>,
+        interrupted: &AtomicBool,
+    ) -> Result<(), JobError> {
+        let socket = collector::bind(Ipv4Addr::LOCALHOST, options.port.unwrap_or(0))?;
+        let port = socket.local_addr().map_err(CollectError::Socket)?.port();
+        let session = self.session();
+        let emulated = options.backend == Backend::Qemu;
+        let wanted = Wanted {
+            qemu: emulated,
+            firmware: emulated,
+            ..Wanted::default()
+        };
+        let tools = setup::ensure(wanted, Install::unless(options.no_install))?;
+        let images = self.build(&tools, &options.boards)?;
+        let route = if emulated {
+            Route::qemu(port)
+        } else {
+            Route::loopback(port)
+        };
+        let blocks = boot_blocks(&session, &route)?;
+        let start = Instant::now();
+        let (fleet, origin) = match &tools.qemu {
+            Some(qemu) => {
+                let cores = cores(&images, blocks, capture);
+                let fleet = QemuFleet::start(qemu, &cores, &self.out.join("cores"))?;
+                let origin = Origin {
+                    backend: "qemu",
+                    boards: options.boards.clone(),
+                    counts_instructions: true,
+                };
+                (Fleet::Qemu(fleet), origin)
+            }
+            None => {
+                let fleet = NativeFleet::start(&blocks, options.picture.profile)?;
+                let origin = Origin {
+                    backend: "native",
+                    boards: Vec::new(),
+                    counts_instructions: false,
+                };
+                (Fleet::Native(fleet), origin)
+            }
+        };
+        self.collect(&session, &socket, fleet, origin, start, interrupted)
+    }
+
+    /// Refuses a core that this job does not have.
+    fn check_core(&self, core: u16) -> Result<(), JobError> {
+        let cores = self.options.cores;
+        if core < cores {
+            Ok(())
+        } else {
+            Err(JobError::NoSuchCore { core, cores })
+        }
+    }
+
     /// The image of each board, where there is a toolchain for it.
     fn build(&self, tools: &Tools, boards: &[Board]) -> Result<Vec<(Board, PathBuf)>, JobError> {
         let Some(toolchain) = &tools.firmware else {
             return Ok(Vec::new());
         };
-        let recipe = self.recipe();
-        let build = |&board: &Board| {
-            eprintln!(
-                "building the image for {} on {board} with {}",
-                self.scene.name,
-                recipe.describe()
-            );
-            let image = firmware::build(toolchain, board, &recipe)?;
-            eprintln!("{}", image.size);
-            Ok((board, image.elf))
-        };
+        let build = |&board: &Board| Ok((board, self.image(toolchain, board)?));
         boards.iter().map(build).collect()
     }
+
+    /// The image of a board.
+    fn image(&self, toolchain: &Toolchain, board: Board) -> Result<PathBuf, JobError> {
+        let recipe = self.recipe();
+        eprintln!(
+            "building the image for {} on {board} with {}",
+            self.scene.name,
+            recipe.describe()
+        );
+        let image = firmware::build(toolchain, board, &recipe)?;
+        eprintln!("{}", image.size);
+        Ok(image.elf)
+    }
+}
+
+/// One core a boot block; the boards take turns.
+fn cores(images: &[(Board, PathBuf)], blocks: Vec<Vec<u8>>, capture: Option<&Capture>) -> Vec<Core> {
+    let turns = (0..).zip(images.iter().cycle()).zip(blocks);
+    let core = |((number, (board, elf)), boot_block): ((u16, &(Board, PathBuf)), _)| Core {
+        capture: capture
+            .filter(|capture| capture.core == number)
+            .map(|capture| capture.file.clone()),
+        ..Core::new(number, *board, elf, boot_block)
+    };
+    turns.map(core).collect()
 }
 
 /// The boot blocks of all cores.
