@@ -13,6 +13,10 @@ fn main() {
     }
     println!("cargo::rustc-link-arg=-Tlink.x");
     println!("cargo::rustc-link-arg=-Tno_float.x");
+    if env::var_os("CARGO_FEATURE_LOG").is_some() {
+        // defmt's: the log's texts, which stay in the file and take no memory of the core.
+        println!("cargo::rustc-link-arg=-Tdefmt.x");
+    }
     // Debug information of code that was left out points to address 0 by default, which is where our code is.
     println!("cargo::rustc-link-arg=-zdead-reloc-in-nonalloc=.debug_*=0xffffffff");
 }

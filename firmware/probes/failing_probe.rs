@@ -8,7 +8,7 @@ use node::ethernet::Ethernet;
 use node::{Network, SendError, Words};
 use runtime::image::{ImageNeeds, ImageProfile};
 use runtime::{Board, Exit, die, memory};
-use wire::{Boot, FromCore, Report};
+use wire::{Boot, FromCore, Name, Report};
 
 /// Units that core 0 sends before it fails.
 const GOOD_UNITS: u32 = 3;
@@ -26,8 +26,8 @@ fn start() -> ! {
         network: Ethernet::new(&boot, &mut controller),
         good_units: if boot.core == 0 { GOOD_UNITS } else { u32::MAX },
     };
-    match node::run::<ImageProfile, ImageNeeds>(&boot, Core::NAME, network, Core::clock(), memory::stack_use)
-    {
+    let name = Name::new(Core::NAME);
+    match node::run::<ImageProfile, ImageNeeds>(&boot, name, network, Core::clock(), memory::stack_use) {
         Ok(_) => Core::exit(Exit::Done),
         Err(fault) => die::<Core>(&Words::of(fault.as_str()), Exit::Fault),
     }

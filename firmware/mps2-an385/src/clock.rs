@@ -10,6 +10,11 @@ const COUNTER: Register<u32> = unsafe { Register::new(0x4002_8018) };
 const COUNTS: u32 = 25;
 const TICKS: u32 = 24;
 
+/// What the counter shows.
+pub(crate) fn count() -> u32 {
+    COUNTER.read()
+}
+
 /// The clock. Under QEMU's `-icount shift=0` an instruction takes a nanosecond of its time, so that 24 ticks are 1000
 /// instructions.
 ///
@@ -27,7 +32,7 @@ impl Counter {
     /// The clock, from now on.
     pub fn start() -> Self {
         Self {
-            count: COUNTER.read(),
+            count: count(),
             ticks: 0,
             rest: 0,
         }
@@ -36,7 +41,9 @@ impl Counter {
 
 impl Clock for Counter {
     fn ticks(&mut self) -> u32 {
-        let count = COUNTER.read();
+        #[cfg(feature = "log")]
+        crate::log::uptime();
+        let count = count();
         let passed = count.wrapping_sub(self.count);
         self.count = count;
         let rest = passed % COUNTS * TICKS + self.rest;

@@ -10,6 +10,7 @@
 //! | [`lan9118`]      | the Ethernet controller                               |
 //! | [`semihosting`]  | the way out, with an exit code                        |
 //! | [`fault`]        | panics and processor exceptions                       |
+//! | `log`            | semihosting, with the feature `log`                   |
 //!
 //! Start-up code, vectors and the sections' layout are `cortex-m-rt`'s; `memory.x` says where everything lies.
 #![no_std]
@@ -18,20 +19,21 @@ pub mod clock;
 pub mod console;
 pub mod fault;
 pub mod lan9118;
+#[cfg(feature = "log")]
+mod log;
 pub mod rest;
 pub mod semihosting;
 
 pub use cortex_m_rt::entry;
 
 use runtime::{Board, Exit};
-use wire::Name;
 
 /// A core of this board.
 #[derive(Clone, Copy, Debug)]
 pub enum Core {}
 
 impl Board for Core {
-    const NAME: Name = Name::new("mps2-an385");
+    const NAME: &'static str = "mps2-an385";
     const NO_CONTROLLER: &'static str = "no LAN9118 answers: start QEMU with -nic user,model=lan9118";
     type Controller = lan9118::Lan9118;
     type Clock = clock::Counter;

@@ -14,7 +14,7 @@ use smoltcp::wire::{
 };
 use wire::{Boot, MAX_PAYLOAD};
 
-use crate::{Network, SendError};
+use crate::{Network, SendError, log};
 
 const ETHERNET_LEN: usize = 14;
 const ARP_LEN: usize = 28;
@@ -156,6 +156,10 @@ impl<'a> Ethernet<'a> {
         }
         let Some((source, payload)) = udp_payload(&packet, self.port) else {
             self.refused = self.refused.wrapping_add(1);
+            log::warn!(
+                "datagram of {=usize} bytes dropped: malformed",
+                packet.payload().len()
+            );
             return None;
         };
         self.learn(source, from);

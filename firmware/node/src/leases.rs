@@ -2,6 +2,8 @@
 
 use heapless::{Deque, HistoryBuf};
 
+use crate::log;
+
 /// Leases a core holds at once.
 pub const LEASES: usize = 4;
 
@@ -30,12 +32,14 @@ impl Leases {
     /// Takes a lease. A duplicate is nothing new, and so no error; a lease that was refused is not remembered.
     pub(crate) fn take(&mut self, number: u16, first: u32, last: u32) -> Result<(), Full> {
         if self.seen.as_slice().contains(&number) {
+            log::debug!("lease {=u16} is here already", number);
             return Ok(());
         }
         self.queue
             .push_back(Lease { next: first, last })
             .map_err(|_| Full)?;
         self.seen.write(number);
+        log::debug!("lease {=u16}: units {=u32} to {=u32}", number, first, last);
         Ok(())
     }
 

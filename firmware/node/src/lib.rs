@@ -23,6 +23,7 @@
 pub mod ethernet;
 mod fault;
 mod leases;
+pub mod log;
 mod order;
 mod words;
 mod worker;

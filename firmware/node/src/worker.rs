@@ -8,7 +8,7 @@ use wire::{
 
 use crate::leases::Leases;
 use crate::order::Order;
-use crate::{Clock, Fault, Network, TICKS_PER_SECOND};
+use crate::{Clock, Fault, Network, TICKS_PER_SECOND, log};
 
 /// An idle core asks for work this often.
 const HELLO_EVERY: u32 = TICKS_PER_SECOND / 20;
@@ -112,6 +112,14 @@ impl<'a> Worker<'a> {
     /// Works until told to stop.
     #[inline(never)] // a caller compiled for speed would copy the loop's parts into itself
     pub fn run(mut self, stack: fn() -> StackUse) -> Result<Outcome, Fault> {
+        log::info!(
+            "core {=u16} of {=u16}: session {=u32:08x}, scene {=u32:08x}, {=u32} units",
+            self.boot.core,
+            self.boot.cores,
+            self.boot.session,
+            self.scene,
+            self.units
+        );
         self.say_hello()?;
         let mut last_hello = self.clock.ticks();
         loop {
@@ -135,10 +143,17 @@ impl<'a> Worker<'a> {
 
     /// Renders one unit and sends it.
     fn work(&mut self, unit: u32) -> Result<(), Fault> {
+        log::trace!("unit {=u32} begins", unit);
         let mut sums = Sums::default();
         let start = self.clock.ticks();
         let rays = self.renderer.render(unit, &mut sums);
         let ticks = self.clock.ticks().wrapping_sub(start);
+        log::debug!(
+            "unit {=u32} is done: {=u32} ticks, {=u32} rays",
+            unit,
+            ticks,
+            rays
+        );
         let extent = self.plan.extent(unit);
         let sums =
             PixelSums::new(&sums[..usize::from(extent.pixels).min(sums.len())]).map_err(Fault::Sums)?;
@@ -172,19 +187,40 @@ impl<'a> Worker<'a> {
 
     /// Does what a packet says; false where it is not for this core now.
     fn obey(&mut self, payload: &[u8]) -> bool {
-        let Ok(ToCore { core, session, order }) = ToCore::decode(payload) else {
-            return false;
+        let ToCore { core, session, order } = match ToCore::decode(payload) {
+            Ok(packet) => packet,
+            Err(error) => {
+                log::warn!("packet rejected: {=str}", error.as_str());
+                return false;
+            }
         };
         if core != self.boot.core || session != self.boot.session {
+            log::warn!(
+                "packet rejected: it is for core {=u16} of session {=u32:08x}",
+                core,
+                session
+            );
             return false;
         }
         match order {
             Command::Lease { number, first, count } => {
                 let last = first + (count - 1);
                 let wanted = matches!(self.order, Order::Leased) && last < self.units;
-                wanted && self.leases.take(number, first, last).is_ok()
+                let taken = wanted && self.leases.take(number, first, last).is_ok();
+                if !taken {
+                    log::warn!(
+                        "lease {=u16} refused: units {=u32} to {=u32} of {=u32}, with room for {=u8} leases",
+                        number,
+                        first,
+                        last,
+                        self.units,
+                        self.free_leases()
+                    );
+                }
+                taken
             }
             Command::Stop => {
+                log::info!("told to stop");
                 self.stopped = true;
                 true
             }
@@ -192,6 +228,7 @@ impl<'a> Worker<'a> {
     }
 
     fn say_hello(&mut self) -> Result<(), Fault> {
+        log::debug!("HELLO, with room for {=u8} leases", self.free_leases());
         self.say(Report::Hello(Hello {
             version: VERSION,
             free_leases: self.free_leases(),
@@ -207,6 +244,13 @@ impl<'a> Worker<'a> {
             rejected: self.all_rejected(),
             stack,
         };
+        log::info!(
+            "done: {=u32} units, {=u32} packets rejected, {=u32} of {=u32} bytes of stack used",
+            outcome.units,
+            outcome.rejected,
+            stack.used,
+            stack.size
+        );
         for _ in 0..FAREWELLS {
             self.say(Report::Farewell(Farewell {
                 units: outcome.units,
@@ -230,10 +274,16 @@ impl<'a> Worker<'a> {
             report,
         }
         .encode(&mut packet);
-        for _ in 0..SEND_TRIES {
+        for failed in 0..SEND_TRIES {
             if self.network.send(&packet[..len]).is_ok() {
+                log::trace!("packet {=u16} of {=usize} bytes sent", seq, len);
                 return Ok(());
             }
+            log::debug!(
+                "packet {=u16} not sent, {=u32} tries left",
+                seq,
+                SEND_TRIES - 1 - failed
+            );
             self.receive();
             self.network.wait(SEND_REST);
         }

@@ -28,6 +28,8 @@ fn die_at<B: Board>(address: Option<u32>, words: &Words, code: Exit) -> ! {
         // There is nobody left to tell if this fails; the console has it.
         let _ = node::last_words(&boot, &mut network, address, words.as_str());
     }
+    #[cfg(feature = "log")]
+    defmt::error!("{=str}", words.as_str());
     B::exit(code)
 }
 

@@ -9,10 +9,14 @@
 //! | [`registers`] | volatile access; every device driver is made of it |
 //! | [`memory`]    | boot block and stack, as the linker placed them    |
 //! | [`fault`]     | a flag: the core is dying already                  |
+//!
+//! With the feature `log`, a core's log is stamped with `log::uptime`.
 #![no_std]
 
 pub mod fault;
 pub mod image;
+#[cfg(feature = "log")]
+pub mod log;
 pub mod memory;
 pub mod registers;
 
@@ -21,12 +25,14 @@ pub use fault::{die, exception, panicked};
 use image::{ImageNeeds, ImageProfile};
 use node::ethernet::{Ethernet, Frames};
 use node::{Clock, Words};
+#[cfg(feature = "log")]
+use tracer::profile::Profile;
 use wire::{Boot, Name};
 
 /// A board: what differs from one to another.
 pub trait Board {
     /// The name HELLO gives.
-    const NAME: Name;
+    const NAME: &'static str;
     /// What is said where no network controller answers.
     const NO_CONTROLLER: &'static str;
     /// The driver of its Ethernet controller.
@@ -48,7 +54,7 @@ pub trait Board {
     fn exit(code: Exit) -> !;
 }
 
-/// How a core ended; the value is the exit code. After one of the last two, the fleet starts the core again.
+/// How a core ended; the value is the exit code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub enum Exit {
@@ -87,7 +93,10 @@ pub fn run<B: Board>() -> ! {
     let mut network = Ethernet::new(&boot, &mut controller);
     // A lost announcement costs nothing: requests for the address are answered.
     let _ = network.announce();
-    match node::run::<ImageProfile, ImageNeeds>(&boot, B::NAME, network, B::clock(), memory::stack_use) {
+    #[cfg(feature = "log")]
+    defmt::info!("{=str} with profile {=str}", B::NAME, ImageProfile::NAME);
+    let name = const { Name::new(B::NAME) };
+    match node::run::<ImageProfile, ImageNeeds>(&boot, name, network, B::clock(), memory::stack_use) {
         Ok(outcome) if outcome.stack.used >= outcome.stack.size => die::<B>(
             &Words::of("the stack ran over: enlarge it in memory.x"),
             Exit::Fault,

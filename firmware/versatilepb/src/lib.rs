@@ -10,6 +10,7 @@
 //! | [`smc91c111`]    | the Ethernet controller                            |
 //! | [`semihosting`]  | the way out, with an exit code                     |
 //! | [`fault`]        | panics and processor exceptions                    |
+//! | `log`            | the second PL011, with the feature `log`           |
 //!
 //! Start-up code, vectors and the sections' layout are `aarch32-rt`'s; `memory.x` says where everything lies.
 #![no_std]
@@ -17,6 +18,8 @@
 pub mod clock;
 pub mod console;
 pub mod fault;
+#[cfg(feature = "log")]
+mod log;
 pub mod rest;
 pub mod semihosting;
 pub mod smc91c111;
@@ -24,14 +27,13 @@ pub mod smc91c111;
 pub use aarch32_rt::entry;
 
 use runtime::{Board, Exit};
-use wire::Name;
 
 /// A core of this board.
 #[derive(Clone, Copy, Debug)]
 pub enum Core {}
 
 impl Board for Core {
-    const NAME: Name = Name::new("versatilepb");
+    const NAME: &'static str = "versatilepb";
     const NO_CONTROLLER: &'static str = "no SMC91C111 answers: start QEMU with -nic user,model=smc91c111";
     type Controller = smc91c111::Smc91c111;
     type Clock = clock::Counter;
