@@ -37,6 +37,8 @@ struct Traits {
     itcm: Range<u64>,
     dtcm: Range<u64>,
     machine: &'static [&'static str],
+    /// What puts its log on QEMU's standard output, where that is not so anyway.
+    log: &'static [&'static str],
     card: &'static str,
 }
 
@@ -59,6 +61,8 @@ const VERSATILEPB: Traits = Traits {
         "-global",
         "pl041.audiodev=a",
     ],
+    // The second serial port.
+    log: &["-serial", "stdio"],
     card: "smc91c111",
 };
 
@@ -69,6 +73,8 @@ const MPS2_AN385: Traits = Traits {
     itcm: 0..0x8000,
     dtcm: 0x2000_0000..0x2001_0000,
     machine: &["-M", "mps2-an385"],
+    // Semihosting writes there.
+    log: &[],
     card: "lan9118",
 };
 
@@ -136,6 +142,14 @@ impl Board {
         arguments.extend(["-kernel".into(), elf.into()]);
         arguments
     }
+
+    /// The words that put the frames of a board's log on QEMU's standard output, and its console at the end of a file.
+    pub fn log_to_stdout(self, console: &Path) -> Vec<OsString> {
+        let console = format!("file,id=console,append=on,path={}", escaped(console));
+        let console = ["-chardev", &console, "-serial", "chardev:console"];
+        let words = ["-monitor", "none"].iter().chain(&console);
+        words.chain(self.traits().log).map(OsString::from).collect()
+    }
 }
 
 /// The words that make QEMU record the packets of a board's network card in `file`, as Wireshark reads them.
@@ -176,6 +190,9 @@ mod tests {
             Board::Versatilepb.command_line(Path::new("image.elf"), Some(Path::new("a,b/core-0.boot")));
         let loader = OsString::from("loader,addr=0x400000,file=a,,b/core-0.boot,force-raw=on");
         assert!(words.contains(&loader), "{words:?}");
+        let console = OsString::from("file,id=console,append=on,path=a,,b/core-0.log");
+        let words = Board::Versatilepb.log_to_stdout(Path::new("a,b/core-0.log"));
+        assert!(words.contains(&console), "{words:?}");
         let dump = "filter-dump,id=capture,netdev=net,file=a,,b/core-0.pcap";
         assert_eq!(capture_to(Path::new("a,b/core-0.pcap"))[1], dump);
     }

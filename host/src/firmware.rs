@@ -17,6 +17,7 @@ use serde::Serialize;
 use crate::arithmetic::Arithmetic;
 use crate::board::{Board, DTCM_BUDGET, ITCM_BUDGET};
 use crate::file::write_whole;
+use crate::log::Level;
 use crate::scene::SceneNeeds;
 use crate::setup::Toolchain;
 
@@ -29,6 +30,8 @@ pub struct Recipe {
     pub needs: SceneNeeds,
     /// Whether paths end by Russian roulette.
     pub roulette: bool,
+    /// What it logs; none for an image without a log, the one that is measured.
+    pub log: Option<Level>,
 }
 
 impl Recipe {
@@ -43,12 +46,16 @@ impl Recipe {
 
     /// The recipe in words.
     pub fn describe(&self) -> String {
-        format!("profile {} and {}", self.profile, self.words().replace(',', ", "))
+        let log = self.log.map(|level| format!(", logging {level}"));
+        let words = self.words().replace(',', ", ");
+        format!("profile {} and {words}{}", self.profile, log.unwrap_or_default())
     }
 
     /// The image's file name.
     fn file_name(&self, board: Board) -> String {
-        format!("{board}-{}-{}.elf", self.profile, self.words().replace(',', "-"))
+        let log = self.log.map(|level| format!("-log-{level}"));
+        let words = self.words().replace(',', "-");
+        format!("{board}-{}-{words}{}.elf", self.profile, log.unwrap_or_default())
     }
 }
 
@@ -197,6 +204,7 @@ pub fn build_examples(
             glass: true,
         },
         roulette: true,
+        log: None,
     };
     let mut command = cargo(toolchain, board, "build", &recipe);
     for name in names {
@@ -228,6 +236,14 @@ pub fn cargo(toolchain: &Toolchain, board: Board, verb: &str, recipe: &Recipe) -
     command
         .env("TRACER_PROFILE", recipe.profile.name())
         .env("TRACER_NEEDS", recipe.words());
+    if let Some(level) = recipe.log {
+        command.args(["--features", "log"]).env("DEFMT_LOG", level.name());
+        // A line's place is that of a variable, of which less than full debug information says nothing.
+        for package in ["node", "runtime"] {
+            let setting = format!("profile.firmware.package.{package}.debug=\"full\"");
+            command.args(["--config", &setting]);
+        }
+    }
     command
 }
 
@@ -441,11 +457,20 @@ mod tests {
             profile: Arithmetic::Paper,
             needs,
             roulette: true,
+            log: None,
         };
         assert_eq!(recipe.words(), "diffuse,glass,roulette");
         assert_eq!(
             recipe.file_name(Board::Mps2An385),
             "mps2-an385-paper-diffuse-glass-roulette.elf"
+        );
+        let logging = Recipe {
+            log: Some(Level::Debug),
+            ..recipe
+        };
+        assert_eq!(
+            logging.file_name(Board::Versatilepb),
+            "versatilepb-paper-diffuse-glass-roulette-log-debug.elf"
         );
         let nothing = SceneNeeds {
             diffuse: false,

@@ -1,7 +1,7 @@
 //! The host side: what a scene becomes, what runs it, and what is made of the pixels that come back.
 //!
 //! In the order of a render: [`scene`] reads and compiles, [`setup`] and [`firmware`] build the image, [`fleet`] starts the
-//! cores of a [`session`], [`collector`] gathers their pixels on a [`film`], [`reference`](mod@reference) and [`lockstep`] say what
+//! cores of a [`session`] and reads their [`log`], [`collector`] gathers their pixels on a [`film`], [`reference`](mod@reference) and [`lockstep`] say what
 //! they should have been, [`compare`] and [`difference`] how far off they are, and [`report`] writes it down. [`job`] is
 //! all of that in one call. [`capture`] reads the packets that a core's emulator recorded. [`generators`] judges the random
 //! numbers by themselves, and [`mod@operations`] is the price list of the arithmetic.
@@ -22,6 +22,7 @@ pub mod generators;
 pub mod interrupt;
 pub mod job;
 pub mod lockstep;
+pub mod log;
 pub mod memory;
 pub mod openexr;
 pub mod operations;

@@ -256,6 +256,7 @@ fn bad_flags_have_one_clear_error_each() {
         (&["--out", "/proc/nowhere"], &["/proc/nowhere", "--out"]),
         (&["--port", port.as_str()], &[port.as_str(), "--port"]),
         (&["no-such-scene.toml"], &["no-such-scene.toml"]),
+        (&["--log", "debug"], &["--log", "--backend native"]),
         (&["--board", "mps2-an385"], &["mps2-an385", "not built yet"]),
     ] {
         let (success, text) = xtask(&[&["render", "--backend", "native"], arguments].concat());

@@ -20,6 +20,7 @@ fn recipe(profile: Arithmetic, needs: SceneNeeds) -> Recipe {
         profile,
         needs,
         roulette: true,
+        log: None,
     }
 }
 

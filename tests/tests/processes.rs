@@ -156,6 +156,7 @@ fn the_collector_takes_cores_that_are_started_elsewhere() {
         profile: Arithmetic::Precise,
         needs,
         roulette: true,
+        log: None,
     };
     let image = firmware::build(&toolchain(), Board::Versatilepb, &recipe).expect("an image");
     let elf = image.elf.to_str().expect("UTF-8");

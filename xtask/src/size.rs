@@ -72,6 +72,7 @@ pub(crate) fn measure(toolchain: &Toolchain, scene: &Scene) -> anyhow::Result<Ve
                 profile,
                 needs,
                 roulette: true,
+                log: None,
             },
         )?;
         let row = Row {

@@ -8,6 +8,7 @@ use anyhow::{Context, bail};
 use host::arithmetic::Arithmetic;
 use host::board::Board;
 use host::firmware::{self, Recipe};
+use host::log::Level;
 use host::scene::{Scene, compile};
 use host::setup::{self, Toolchain, Wanted};
 
@@ -105,14 +106,17 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Lints the boards' crates with the compiler that builds them.
+/// Lints the boards' crates with the compiler that builds them, without a log and with all of it.
 fn lint_firmware(toolchain: &Toolchain, scene: &Scene) -> anyhow::Result<()> {
-    let recipe = Recipe {
-        profile: Arithmetic::Precise,
-        needs: compile(scene, 4, 3).needs,
-        roulette: true,
-    };
-    for board in Board::ALL {
+    let needs = compile(scene, 4, 3).needs;
+    let both = |board| [(board, None), (board, Some(Level::Trace))];
+    for (board, log) in Board::ALL.into_iter().flat_map(both) {
+        let recipe = Recipe {
+            profile: Arithmetic::Precise,
+            needs,
+            roulette: true,
+            log,
+        };
         let mut command = firmware::cargo(toolchain, board, "clippy", &recipe);
         command.args(["--", "--deny", "warnings"]);
         succeed(command)?;

@@ -1,5 +1,6 @@
 //! The cores of a run: started together, watched, and ended when the run ends, however it ends.
 
+mod log;
 mod native;
 mod qemu;
 
@@ -9,7 +10,7 @@ pub(crate) use qemu::bound_to_this_process;
 pub(crate) use qemu::tests::{cores, fake_qemu};
 pub use qemu::{Core, QemuFleet, capture_of, run_to_end, run_with_peer};
 
-use std::path::Path;
+use crate::symbols::Place;
 
 /// Times a core is started again at most.
 pub const RESTARTS: usize = 3;
@@ -28,6 +29,9 @@ pub enum FleetError {
         /// What the system said.
         cause: std::io::Error,
     },
+    /// What a core logs could not be read.
+    #[error(transparent)]
+    Log(#[from] crate::log::LogError),
     /// The emulator could not be started.
     #[error("core {core}: cannot start {program}: {cause}")]
     Start {
@@ -89,10 +93,10 @@ impl Fleet {
         !matches!(self, Self::Elsewhere)
     }
 
-    /// The image that a core runs.
-    pub fn image(&self, core: u16) -> Option<&Path> {
+    /// Where in the source of a core's image an address is.
+    pub fn place(&self, core: u16, address: u32) -> Option<Place> {
         match self {
-            Self::Qemu(fleet) | Self::Debugged(fleet) => fleet.image(core),
+            Self::Qemu(fleet) | Self::Debugged(fleet) => Place::of(fleet.image(core)?, address),
             Self::Native(_) | Self::Elsewhere => None,
         }
     }
@@ -101,6 +105,22 @@ impl Fleet {
     pub fn last_output(&self, core: u16) -> Vec<String> {
         match self {
             Self::Qemu(fleet) | Self::Debugged(fleet) => fleet.last_output(core),
+            Self::Native(_) | Self::Elsewhere => Vec::new(),
+        }
+    }
+
+    /// Warnings and errors that the cores have logged since the last call. With all else they go to the fleet's log, too.
+    pub fn warnings(&mut self) -> Vec<String> {
+        match self {
+            Self::Qemu(fleet) | Self::Debugged(fleet) => fleet.warnings(),
+            Self::Native(_) | Self::Elsewhere => Vec::new(),
+        }
+    }
+
+    /// Ends the cores, and returns their last warnings.
+    pub fn end(self) -> Vec<String> {
+        match self {
+            Self::Qemu(fleet) | Self::Debugged(fleet) => fleet.end(),
             Self::Native(_) | Self::Elsewhere => Vec::new(),
         }
     }

@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Output, Stdio};
 use std::time::{Duration, Instant};
 
+use super::log::FleetLog;
 use super::{FleetError, LAST_LINES, RESTARTS};
 use crate::board::{self, Board};
 use crate::{memory, setup};
@@ -47,6 +48,8 @@ pub struct Core {
     pub elf: PathBuf,
     /// Its boot block.
     pub boot_block: Vec<u8>,
+    /// Whether its image has a log.
+    pub logs: bool,
     /// Where its packets are recorded, if anywhere; those of later lives beside it, see [`capture_of`].
     pub capture: Option<PathBuf>,
     /// The TCP port on which it waits for a debugger before its first instruction, if for any.
@@ -61,14 +64,18 @@ impl Core {
             board,
             elf: elf.to_owned(),
             boot_block,
+            logs: false,
             capture: None,
             debugger: None,
         }
     }
 
-    /// QEMU's arguments for it, with its boot block in file `boot`.
-    fn command_line(&self, boot: &Path, restarts: usize) -> Vec<OsString> {
-        let mut words = self.board.command_line(&self.elf, Some(boot));
+    /// QEMU's arguments for it.
+    fn command_line(&self, files: &Files, restarts: usize) -> Vec<OsString> {
+        let mut words = self.board.command_line(&self.elf, Some(&files.boot));
+        if self.logs {
+            words.extend(self.board.log_to_stdout(&files.log));
+        }
         if let Some(first) = &self.capture {
             words.extend(board::capture_to(&capture_of(first, restarts)));
         }
@@ -110,6 +117,7 @@ impl Guest {
 struct Files {
     boot: PathBuf,
     log: PathBuf,
+    frames: PathBuf,
     pid: PathBuf,
 }
 
@@ -119,6 +127,7 @@ impl Files {
         Self {
             boot: file("boot"),
             log: file("log"),
+            frames: file("defmt"),
             pid: file("pid"),
         }
     }
@@ -130,22 +139,30 @@ pub struct QemuFleet {
     qemu: PathBuf,
     guests: Vec<Guest>,
     measured: Instant,
+    log: Option<FleetLog>,
 }
 
 impl QemuFleet {
-    /// Starts one process a core. `folder` gets, for each core N, `core-N.boot`, its console's `core-N.log`, and its
-    /// process's id in `core-N.pid`.
+    /// Starts one process a core. `folder` gets, for each core N, `core-N.boot`, its console's `core-N.log`, its
+    /// process's id in `core-N.pid`, and the frames of its log in `core-N.defmt`; and `fleet.log`, if any core has a log.
     pub fn start(qemu: &Path, cores: &[Core], folder: &Path) -> Result<Self, FleetError> {
         let mut fleet = Self {
             qemu: qemu.to_owned(),
             guests: Vec::with_capacity(cores.len()),
             measured: Instant::now(),
+            log: None,
         };
         fs::create_dir_all(folder).map_err(unusable(folder))?;
+        if cores.iter().any(|core| core.logs) {
+            fleet.log = Some(FleetLog::create(folder.join("fleet.log"))?);
+        }
         for core in cores {
             let files = Files::new(folder, core.number);
             fs::write(&files.boot, &core.boot_block).map_err(unusable(&files.boot))?;
             fs::write(&files.log, []).map_err(unusable(&files.log))?;
+            if let Some(log) = fleet.log.as_mut().filter(|_| core.logs) {
+                log.add(core, &files.frames)?;
+            }
             let child = launch(qemu, core, &files, 0)?;
             let guest = Guest {
                 core: core.clone(),
@@ -191,6 +208,20 @@ impl QemuFleet {
         self.guests.iter().find(|guest| guest.core.number == core)
     }
 
+    /// The fleet's log, where there is one.
+    pub fn log(&self) -> Option<&Path> {
+        self.log.as_ref().map(FleetLog::path)
+    }
+
+    pub(super) fn warnings(&mut self) -> Vec<String> {
+        self.log.as_mut().map(FleetLog::look).unwrap_or_default()
+    }
+
+    pub(super) fn end(mut self) -> Vec<String> {
+        self.kill();
+        self.log.as_mut().map(FleetLog::end).unwrap_or_default()
+    }
+
     /// The ids of the processes, core by core.
     pub fn process_ids(&self) -> Vec<u32> {
         self.guests.iter().map(|guest| guest.child.id()).collect()
@@ -227,6 +258,16 @@ impl QemuFleet {
         ended
     }
 
+    fn kill(&mut self) {
+        for guest in &mut self.guests {
+            // The only error is that it has ended already.
+            let _gone = guest.child.kill();
+        }
+        for guest in &mut self.guests {
+            let _status = guest.child.wait();
+        }
+    }
+
     pub(super) fn how_ended(&self, core: u16) -> Option<String> {
         let status = self.guest(core)?.ended?;
         Some(match (status.code(), status.signal()) {
@@ -253,30 +294,24 @@ impl QemuFleet {
 
 impl Drop for QemuFleet {
     fn drop(&mut self) {
-        for guest in &mut self.guests {
-            // The only error is that it has ended already.
-            let _gone = guest.child.kill();
-        }
-        for guest in &mut self.guests {
-            let _status = guest.child.wait();
-        }
+        self.kill();
     }
 }
 
 /// What becomes of an error at a core's file.
-fn unusable(path: &Path) -> impl FnOnce(io::Error) -> FleetError {
+pub(super) fn unusable(path: &Path) -> impl FnOnce(io::Error) -> FleetError {
     let path = path.to_owned();
     move |cause| FleetError::File { path, cause }
 }
 
-/// Starts a core's process, whose console is added to its log.
+/// Starts a core's process, whose console is added to its log, and its frames to those before.
 fn launch(qemu: &Path, core: &Core, files: &Files, restarts: usize) -> Result<Child, FleetError> {
-    let Files { boot, log, .. } = files;
-    let output = File::options().append(true).open(log).map_err(unusable(log))?;
-    let errors = output.try_clone().map_err(unusable(log))?;
+    let end_of = |path: &Path| File::options().append(true).open(path).map_err(unusable(path));
+    let output = end_of(if core.logs { &files.frames } else { &files.log })?;
     let mut command = bound_to_this_process(qemu);
-    command.args(core.command_line(boot, restarts));
-    command.stdin(Stdio::null()).stdout(output).stderr(errors);
+    command.args(core.command_line(files, restarts));
+    command.stdin(Stdio::null());
+    command.stdout(output).stderr(end_of(&files.log)?);
     // Ctrl-C is for this process, which then ends its cores in order.
     command.process_group(0);
     let program = qemu.display().to_string();

@@ -55,7 +55,7 @@ pub fn debug(options: &DebugOptions) -> Result<ExitStatus, JobError> {
     let (Some(qemu), Some(gdb), Some(toolchain)) = (&tools.qemu, &tools.gdb, &tools.firmware) else {
         return Err(SetupError::StillMissing("one of QEMU, gdb and a compiler".to_owned()).into());
     };
-    let elf = job.image(toolchain, options.board)?;
+    let elf = job.image(toolchain, options.board, None)?;
     let port = free_port().map_err(|cause| JobError::Debugger {
         program: gdb.clone(),
         cause,

@@ -24,6 +24,7 @@ use crate::compare::CompareError;
 use crate::file::WriteError;
 use crate::firmware::{self, FirmwareError, Recipe};
 use crate::fleet::{Core, Fleet, FleetError, NativeFleet, QemuFleet};
+use crate::log::Level;
 use crate::memory;
 use crate::openexr::{self, ReadError};
 use crate::picture::Estimate;
@@ -91,6 +92,9 @@ pub enum JobError {
     /// Threads have no network card whose packets could be recorded.
     #[error("a core's packets can only be recorded in QEMU: leave out --backend native")]
     NoNetwork,
+    /// Threads have no log.
+    #[error("cores keep a log only in QEMU: leave out --log, or --backend native")]
+    NoLog,
     /// The recorded packets could not be read.
     #[error(transparent)]
     Capture(#[from] CaptureError),
@@ -132,6 +136,8 @@ struct Origin {
     boards: Vec<Board>,
     /// The ticks count instructions: one is one virtual nanosecond.
     counts_instructions: bool,
+    /// What they logged.
+    log: Option<PathBuf>,
 }
 
 impl Origin {
@@ -190,6 +196,7 @@ impl Job {
             profile: self.options.profile,
             needs: self.compiled.needs,
             roulette: self.options.termination.0 == Termination::Roulette,
+            log: None,
         }
     }
 
@@ -205,6 +212,7 @@ impl Job {
             backend: "elsewhere",
             boards: vec![board],
             counts_instructions: false,
+            log: None,
         };
         self.collect(
             session,
@@ -230,7 +238,9 @@ impl Job {
         let collection = collector::collect(session, socket, &mut fleet, interrupted, &mut progress)?;
         let wall = before + collection.elapsed;
         let memory = memory::peak(fleet.peak_memory());
-        drop(fleet);
+        for warning in fleet.end() {
+            eprintln!("{warning}");
+        }
         self.conclude(&collection, origin, wall, memory)
     }
 
@@ -285,6 +295,9 @@ impl Job {
         capture: Option<&Capture>,
         interrupted: &AtomicBool,
     ) -> Result<(), JobError> {
+        if options.backend == Backend::Native && options.log.is_some() {
+            return Err(JobError::NoLog);
+        }
         let socket = collector::bind(Ipv4Addr::LOCALHOST, options.port.unwrap_or(0))?;
         let port = socket.local_addr().map_err(CollectError::Socket)?.port();
         let session = self.session();
@@ -295,7 +308,7 @@ impl Job {
             ..Wanted::default()
         };
         let tools = setup::ensure(wanted, Install::unless(options.no_install))?;
-        let images = self.build(&tools, &options.boards)?;
+        let images = self.build(&tools, &options.boards, options.log)?;
         let route = if emulated {
             Route::qemu(port)
         } else {
@@ -305,12 +318,16 @@ impl Job {
         let start = Instant::now();
         let (fleet, origin) = match &tools.qemu {
             Some(qemu) => {
-                let cores = cores(&images, blocks, capture);
+                let mut cores = cores(&images, blocks, capture);
+                for core in &mut cores {
+                    core.logs = options.log.is_some();
+                }
                 let fleet = QemuFleet::start(qemu, &cores, &self.out.join("cores"))?;
                 let origin = Origin {
                     backend: "qemu",
                     boards: options.boards.clone(),
                     counts_instructions: true,
+                    log: fleet.log().map(Path::to_owned),
                 };
                 (Fleet::Qemu(fleet), origin)
             }
@@ -320,6 +337,7 @@ impl Job {
                     backend: "native",
                     boards: Vec::new(),
                     counts_instructions: false,
+                    log: None,
                 };
                 (Fleet::Native(fleet), origin)
             }
@@ -338,17 +356,22 @@ impl Job {
     }
 
     /// The image of each board, where there is a toolchain for it.
-    fn build(&self, tools: &Tools, boards: &[Board]) -> Result<Vec<(Board, PathBuf)>, JobError> {
+    fn build(
+        &self,
+        tools: &Tools,
+        boards: &[Board],
+        log: Option<Level>,
+    ) -> Result<Vec<(Board, PathBuf)>, JobError> {
         let Some(toolchain) = &tools.firmware else {
             return Ok(Vec::new());
         };
-        let build = |&board: &Board| Ok((board, self.image(toolchain, board)?));
+        let build = |&board: &Board| Ok((board, self.image(toolchain, board, log)?));
         boards.iter().map(build).collect()
     }
 
     /// The image of a board.
-    fn image(&self, toolchain: &Toolchain, board: Board) -> Result<PathBuf, JobError> {
-        let recipe = self.recipe();
+    fn image(&self, toolchain: &Toolchain, board: Board, log: Option<Level>) -> Result<PathBuf, JobError> {
+        let recipe = Recipe { log, ..self.recipe() };
         eprintln!(
             "building the image for {} on {board} with {}",
             self.scene.name,

@@ -10,6 +10,7 @@ use wire::boot::PixelOrder;
 
 use crate::arithmetic::Arithmetic;
 use crate::board::Board;
+use crate::log::Level;
 
 /// Samples per pixel in one unit, unless the whole picture has fewer.
 const SAMPLES_PER_UNIT: u32 = 64;
@@ -75,6 +76,9 @@ pub struct RenderOptions {
     /// Cores in QEMU, or as threads of this host
     #[arg(long, value_enum, default_value_t)]
     pub backend: Backend,
+    /// Let the cores log what they do, into cores/fleet.log of the results [default: an image without a log]
+    #[arg(long, value_name = "LEVEL", value_enum)]
+    pub log: Option<Level>,
     /// UDP port of the collector [default: any free one]
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub port: Option<u16>,
@@ -361,6 +365,7 @@ mod tests {
             (["--termination", "never"], "roulette"),
             (["--pixels", "spiral"], "leased, sequential, stochastic"),
             (["--backend", "cloud"], "qemu, native"),
+            (["--log", "loud"], "error, warn, info, debug, trace"),
             (["--port", "65536"], "0..=65535"),
             (["--reference-spp", "7"], "a multiple of 4"),
         ] {

@@ -132,12 +132,15 @@ impl Results<'_> {
 
     /// Writes what there is of a picture, and says so.
     pub(super) fn keep_partial(&self) -> Result<String, JobError> {
+        let log = self.origin.log.as_ref();
+        let log = log.map(|log| format!("; the log is {}", log.display()));
+        let log = log.unwrap_or_default();
         if self.collection.film.samples() == 0 {
-            return Ok("not a single unit came, so there is no picture".to_owned());
+            return Ok(format!("not a single unit came, so there is no picture{log}"));
         }
         self.write(None)?;
         Ok(format!(
-            "the picture as far as it came is {}",
+            "the picture as far as it came is {}{log}",
             self.job.out.join("image.png").display()
         ))
     }
@@ -272,6 +275,9 @@ impl Results<'_> {
             ),
         );
         line("sha256", report.image_sha256.clone());
+        if let Some(log) = &self.origin.log {
+            line("log", log.display().to_string());
+        }
         text.trim_end().to_owned()
     }
 }
