@@ -1,9 +1,17 @@
 //! What stands at an address of an image: the function, the file and the line, by the image's own line tables.
+//!
+//! With it, the last words of a core that fails say in which function that was.
 
 use std::fmt;
 use std::path::Path;
 
+use addr2line::Loader;
+use wire::LastWords;
+
 use crate::firmware::workspace;
+
+/// How the last words of a core that panics begin; file and line follow.
+const PANIC: &str = "panic at ";
 
 /// A place in the source of an image.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -19,7 +27,11 @@ pub struct Place {
 impl Place {
     /// The place of `address` in the image `elf`; nothing where the image cannot be read or does not know it.
     pub fn of(elf: &Path, address: u32) -> Option<Self> {
-        let (loader, address) = (addr2line::Loader::new(elf).ok()?, u64::from(address));
+        let loader = Loader::new(elf).ok()?;
+        Self::in_tables(&loader, address.into())
+    }
+
+    fn in_tables(loader: &Loader, address: u64) -> Option<Self> {
         let mut frames = loader.find_frames(address).ok()?;
         let (mut functions, mut line) = (Vec::new(), None);
         while let Ok(Some(frame)) = frames.next() {
@@ -42,6 +54,29 @@ impl Place {
             inlined_into: functions.next_back(),
         })
     }
+
+    /// The place that a core's panic names in words, and where its code begins.
+    pub fn of_panic(elf: &Path, words: &str) -> Option<(u32, Self)> {
+        let (file, rest) = words.strip_prefix(PANIC)?.split_once(':')?;
+        let line = rest.split(|character: char| !character.is_ascii_digit()).next()?;
+        let named = (shortened(file), line.parse().ok()?);
+        let loader = Loader::new(elf).ok()?;
+        let code = loader.get_section_range(b".text")?;
+        let mut lines = loader.find_location_range(code.begin, code.end).ok()?;
+        let (address, ..) = lines.find(|(_, _, at)| at.file.map(shortened).zip(at.line) == Some(named))?;
+        Some((u32::try_from(address).ok()?, Self::in_tables(&loader, address)?))
+    }
+}
+
+/// A core's last words, and the function in its image that they came from, where that can be found out.
+pub fn explained(elf: &Path, fault: &LastWords<'_>) -> String {
+    let words = fault.words;
+    let found = match fault.address {
+        Some(address) => Place::of(elf, address).map(|place| format!("{words}, in {place}")),
+        None => Place::of_panic(elf, words)
+            .map(|(address, place)| format!("{words}, in {} at {address:#010x}", place.function)),
+    };
+    found.unwrap_or_else(|| words.to_owned())
 }
 
 impl fmt::Display for Place {

@@ -12,9 +12,10 @@ use host::fleet::{Core, Fleet, QemuFleet, RESTARTS, run_to_end};
 use host::job::options::RenderOptions;
 use host::job::{Job, boot_blocks};
 use host::session::Route;
-use host::symbols::Place;
+use host::symbols::{Place, explained};
 use tracer::profile::Precise;
 use whole_system::{cornell, film, plan, qemu, repository, toolchain};
+use wire::LastWords;
 
 /// One of the boards' probes, built.
 fn probe(board: Board, name: &str) -> PathBuf {
@@ -47,6 +48,27 @@ fn the_address_of_a_fault_is_one_of_the_probe_s_own_lines() {
             None,
             "there is no code in data memory"
         );
+    }
+}
+
+#[test]
+fn a_panic_is_traced_to_its_function_by_the_line_it_names() {
+    for board in Board::ALL {
+        let elf = probe(board, "panic_probe");
+        let output = run_to_end(&qemu(), board, &elf).unwrap();
+        let said = String::from_utf8_lossy(&output.stdout).into_owned();
+        let words = LastWords {
+            address: None,
+            words: said.trim(),
+        };
+        let explained = explained(&elf, &words);
+        println!("{board}: {explained}");
+        let (panic, place) = explained.split_once(", in ").unwrap();
+        assert_eq!(panic, words.words);
+        // The address leads back to the line that the core has named.
+        let found = Place::of(&elf, address(place)).unwrap();
+        assert!(place.starts_with(&found.function), "{place}");
+        assert!(panic.contains(&found.line.unwrap()), "{explained}");
     }
 }
 

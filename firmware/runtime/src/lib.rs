@@ -54,7 +54,7 @@ pub trait Board {
     fn exit(code: Exit) -> !;
 }
 
-/// How a core ended; the value is the exit code.
+/// How a core ended; the value is the exit code. After one of the last two, the fleet starts the core again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub enum Exit {

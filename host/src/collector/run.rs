@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use wire::boot::PixelOrder;
-use wire::{FromCore, LastWords, MAX_PAYLOAD, Order, Pixels, Report, ToCore};
+use wire::{FromCore, MAX_PAYLOAD, Order, Pixels, Report, ToCore};
 
 use super::intake::{Rejection, judge};
 use super::leases::{Arrival, Leases};
@@ -17,6 +17,7 @@ use crate::film::{Film, FilmError};
 use crate::fleet::{Fleet, RESTARTS};
 use crate::report::Packets;
 use crate::session::Session;
+use crate::symbols;
 
 /// How long the socket is waited for at once, and so how often deaths and late leases are looked for.
 const TICK: Duration = Duration::from_millis(10);
@@ -207,7 +208,13 @@ impl<'a> Run<'a> {
                 record.sequence.sent_before(packet.seq);
                 record.farewell = Some(farewell);
             }
-            Report::Fault(fault) => record.last_words = Some(explained(self.fleet, packet.core, &fault)),
+            Report::Fault(fault) => {
+                let image = self.fleet.image(packet.core);
+                record.last_words = Some(match image {
+                    Some(elf) => symbols::explained(elf, &fault),
+                    None => fault.words.to_owned(),
+                });
+            }
         }
         Some(packet)
     }
@@ -442,14 +449,5 @@ impl<'a> Run<'a> {
                 gone.extend(self.fleet.newly_ended());
             }
         }
-    }
-}
-
-/// Last words, with the place in the source where the core's image is known.
-fn explained(fleet: &Fleet, core: u16, fault: &LastWords<'_>) -> String {
-    let place = fault.address.and_then(|address| fleet.place(core, address));
-    match place {
-        Some(place) => format!("{}, in {place}", fault.words),
-        None => fault.words.to_owned(),
     }
 }

@@ -10,7 +10,7 @@ pub(crate) use qemu::bound_to_this_process;
 pub(crate) use qemu::tests::{cores, fake_qemu};
 pub use qemu::{Core, QemuFleet, capture_of, run_to_end, run_with_peer};
 
-use crate::symbols::Place;
+use std::path::Path;
 
 /// Times a core is started again at most.
 pub const RESTARTS: usize = 3;
@@ -93,10 +93,10 @@ impl Fleet {
         !matches!(self, Self::Elsewhere)
     }
 
-    /// Where in the source of a core's image an address is.
-    pub fn place(&self, core: u16, address: u32) -> Option<Place> {
+    /// The image that a core runs.
+    pub fn image(&self, core: u16) -> Option<&Path> {
         match self {
-            Self::Qemu(fleet) | Self::Debugged(fleet) => Place::of(fleet.image(core)?, address),
+            Self::Qemu(fleet) | Self::Debugged(fleet) => fleet.image(core),
             Self::Native(_) | Self::Elsewhere => None,
         }
     }
