@@ -12,7 +12,7 @@ use std::process::Command;
 use std::{env, fmt};
 
 use object::{Object, ObjectSection, ObjectSegment, ObjectSymbol, SectionFlags};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::arithmetic::Arithmetic;
 use crate::board::{Board, DTCM_BUDGET, ITCM_BUDGET};
@@ -69,7 +69,7 @@ pub struct Image {
 }
 
 /// Memory an image takes.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ImageSize {
     /// Instruction memory: code, constants and the first values of data.
     pub itcm_bytes: u64,

@@ -4,7 +4,8 @@
 //! cores of a [`session`] and reads their [`log`], [`collector`] gathers their pixels on a [`film`], [`reference`](mod@reference) and [`lockstep`] say what
 //! they should have been, [`compare`] and [`difference`] how far off they are, and [`report`] writes it down. [`job`] is
 //! all of that in one call. [`capture`] reads the packets that a core's emulator recorded. [`generators`] judges the random
-//! numbers by themselves, and [`mod@operations`] is the price list of the arithmetic.
+//! numbers by themselves, and [`mod@operations`] is the price list of the arithmetic, [`samples`] that of
+//! whole samples.
 
 pub mod arithmetic;
 pub mod board;
@@ -29,6 +30,7 @@ pub mod operations;
 pub mod picture;
 pub mod reference;
 pub mod report;
+pub mod samples;
 pub mod scene;
 pub mod session;
 pub mod setup;

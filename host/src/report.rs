@@ -6,8 +6,10 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
+use crate::board::Board;
 use crate::compare::{CompareError, Comparison, Tiles, compare};
 use crate::file::{WriteError, write_whole};
+use crate::firmware::{self, ImageSize};
 use crate::picture::{Estimate, Picture};
 
 /// The whole report.
@@ -23,6 +25,9 @@ pub struct Report {
     pub cores: u32,
     /// The board they ran on; null for the native backend.
     pub board: Option<String>,
+    /// The images they ran; none where the cores were no emulated ones of this host.
+    #[serde(default)]
+    pub images: Vec<Image>,
     /// `qemu` or `native`.
     pub backend: String,
     /// Arithmetic profile.
@@ -57,6 +62,25 @@ pub struct Report {
     pub lockstep_error: Option<LockstepError>,
     /// The cores, one by one.
     pub per_core: Vec<Core>,
+}
+
+/// A board's image.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Image {
+    /// The board.
+    pub board: String,
+    /// How much of a core's memory it takes.
+    #[serde(flatten)]
+    pub size: ImageSize,
+}
+
+impl From<&(Board, firmware::Image)> for Image {
+    fn from((board, image): &(Board, firmware::Image)) -> Self {
+        Self {
+            board: board.name().to_owned(),
+            size: image.size.clone(),
+        }
+    }
 }
 
 /// Packet counts.
@@ -237,6 +261,7 @@ mod tests {
             spp: 16,
             cores: 2,
             board: Some("versatilepb".to_owned()),
+            images: Vec::new(),
             backend: "qemu".to_owned(),
             profile: "precise".to_owned(),
             termination: "roulette".to_owned(),

@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 use clap::Parser;
 use host::job::options::RenderOptions;
-use host::job::{JobError, render};
+use host::job::{Finished, JobError, render};
 use host::scene::{MAX_SPHERES, Scene};
 use serde_json::Value;
 use tempfile::TempDir;
@@ -27,7 +27,7 @@ struct Flags {
 /// A render's folder, and how the render ended.
 struct Done {
     out: TempDir,
-    end: Result<(), JobError>,
+    end: Result<Finished, JobError>,
 }
 
 impl Done {

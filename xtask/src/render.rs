@@ -4,7 +4,7 @@ use std::process::ExitCode;
 
 use host::interrupt;
 use host::job::options::RenderOptions;
-use host::job::{self, JobError};
+use host::job::{self, Finished, JobError};
 
 /// Arguments of `render`.
 #[derive(clap::Args)]
@@ -18,9 +18,12 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
 }
 
 /// The exit code of a render.
-pub(crate) fn outcome(end: Result<(), JobError>) -> anyhow::Result<ExitCode> {
+pub(crate) fn outcome(end: Result<Finished, JobError>) -> anyhow::Result<ExitCode> {
     match end {
-        Ok(()) => Ok(ExitCode::SUCCESS),
+        Ok(finished) => {
+            println!("{}", finished.summary);
+            Ok(ExitCode::SUCCESS)
+        }
         Err(error @ JobError::Interrupted(_)) => {
             eprintln!("error: {error}");
             Ok(ExitCode::from(interrupt::EXIT_CODE))

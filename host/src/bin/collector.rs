@@ -71,7 +71,9 @@ fn run(arguments: &Arguments, interrupted: &std::sync::atomic::AtomicBool) -> Re
         folder.display()
     );
     eprintln!("waiting for {} cores on UDP port {port}", session.cores);
-    job.collect_elsewhere(&session, &socket, arguments.board, interrupted)
+    let finished = job.collect_elsewhere(&session, &socket, arguments.board, interrupted)?;
+    println!("{}", finished.summary);
+    Ok(())
 }
 
 fn route(arguments: &Arguments, port: u16) -> Route {

@@ -16,7 +16,7 @@ use super::options::PictureOptions;
 use super::{Job, JobError};
 use crate::board::Board;
 use crate::collector::{self, CollectError, Progress};
-use crate::firmware;
+use crate::firmware::{self, Image};
 use crate::fleet::{Core, Fleet, QemuFleet, bound_to_this_process};
 use crate::session::{Route, Session};
 use crate::setup::{self, Install, SetupError, Wanted};
@@ -55,7 +55,7 @@ pub fn debug(options: &DebugOptions) -> Result<ExitStatus, JobError> {
     let (Some(qemu), Some(gdb), Some(toolchain)) = (&tools.qemu, &tools.gdb, &tools.firmware) else {
         return Err(SetupError::StillMissing("one of QEMU, gdb and a compiler".to_owned()).into());
     };
-    let elf = job.image(toolchain, options.board, None)?;
+    let Image { elf, .. } = job.image(toolchain, options.board, None)?;
     let port = free_port().map_err(|cause| JobError::Debugger {
         program: gdb.clone(),
         cause,

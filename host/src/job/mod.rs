@@ -22,12 +22,13 @@ use crate::capture::CaptureError;
 use crate::collector::{self, BindError, CollectError, Collection, End, Progress};
 use crate::compare::CompareError;
 use crate::file::WriteError;
-use crate::firmware::{self, FirmwareError, Recipe};
+use crate::firmware::{self, FirmwareError, Image, Recipe};
 use crate::fleet::{Core, Fleet, FleetError, NativeFleet, QemuFleet};
 use crate::log::Level;
 use crate::memory;
 use crate::openexr::{self, ReadError};
 use crate::picture::Estimate;
+use crate::report::{self, Report};
 use crate::scene::{CompiledScene, Scene, SceneError, compile};
 use crate::session::{Route, Session};
 use crate::setup::{self, Install, SetupError, Toolchain, Tools, Wanted};
@@ -129,11 +130,21 @@ pub struct Job {
     out: PathBuf,
 }
 
+/// A picture that is complete, judged and written.
+#[derive(Clone, Debug)]
+pub struct Finished {
+    /// What `report.json` says.
+    pub report: Report,
+    /// The same in a few lines for people.
+    pub summary: String,
+}
+
 /// How the cores were run, for the report.
 #[derive(Clone, Debug)]
 struct Origin {
     backend: &'static str,
     boards: Vec<Board>,
+    images: Vec<report::Image>,
     /// The ticks count instructions: one is one virtual nanosecond.
     counts_instructions: bool,
     /// What they logged.
@@ -207,10 +218,11 @@ impl Job {
         socket: &UdpSocket,
         board: Board,
         interrupted: &AtomicBool,
-    ) -> Result<(), JobError> {
+    ) -> Result<Finished, JobError> {
         let origin = Origin {
             backend: "elsewhere",
             boards: vec![board],
+            images: Vec::new(),
             counts_instructions: false,
             log: None,
         };
@@ -232,7 +244,7 @@ impl Job {
         origin: Origin,
         start: Instant,
         interrupted: &AtomicBool,
-    ) -> Result<(), JobError> {
+    ) -> Result<Finished, JobError> {
         let mut progress = Progress::on_stderr();
         let before = start.elapsed();
         let collection = collector::collect(session, socket, &mut fleet, interrupted, &mut progress)?;
@@ -244,14 +256,14 @@ impl Job {
         self.conclude(&collection, origin, wall, memory)
     }
 
-    /// Judges and writes what was collected, and says how it went.
+    /// Judges and writes what was collected.
     fn conclude(
         &self,
         collection: &Collection,
         origin: Origin,
         wall: Duration,
         memory: Option<u64>,
-    ) -> Result<(), JobError> {
+    ) -> Result<Finished, JobError> {
         let results = results::Results {
             job: self,
             collection,
@@ -265,8 +277,8 @@ impl Job {
                 results.write(None)?;
                 let verdict = results.judge()?;
                 let report = results.write(Some(&verdict))?;
-                println!("{}", results.summary(&report));
-                Ok(())
+                let summary = results.summary(&report);
+                Ok(Finished { report, summary })
             }
             End::Interrupted => Err(JobError::Interrupted(results.keep_partial()?)),
             End::Deserted(why) => Err(JobError::Deserted {
@@ -278,7 +290,7 @@ impl Job {
 }
 
 /// Renders a picture on cores of this host.
-pub fn render(options: &RenderOptions, interrupted: &AtomicBool) -> Result<(), JobError> {
+pub fn render(options: &RenderOptions, interrupted: &AtomicBool) -> Result<Finished, JobError> {
     Job::new(&options.picture)?.render(options, None, interrupted)
 }
 
@@ -294,7 +306,7 @@ impl Job {
         options: &RenderOptions,
         capture: Option<&Capture>,
         interrupted: &AtomicBool,
-    ) -> Result<(), JobError> {
+    ) -> Result<Finished, JobError> {
         if options.backend == Backend::Native && options.log.is_some() {
             return Err(JobError::NoLog);
         }
@@ -326,6 +338,7 @@ impl Job {
                 let origin = Origin {
                     backend: "qemu",
                     boards: options.boards.clone(),
+                    images: images.iter().map(report::Image::from).collect(),
                     counts_instructions: true,
                     log: fleet.log().map(Path::to_owned),
                 };
@@ -336,6 +349,7 @@ impl Job {
                 let origin = Origin {
                     backend: "native",
                     boards: Vec::new(),
+                    images: Vec::new(),
                     counts_instructions: false,
                     log: None,
                 };
@@ -361,7 +375,7 @@ impl Job {
         tools: &Tools,
         boards: &[Board],
         log: Option<Level>,
-    ) -> Result<Vec<(Board, PathBuf)>, JobError> {
+    ) -> Result<Vec<(Board, Image)>, JobError> {
         let Some(toolchain) = &tools.firmware else {
             return Ok(Vec::new());
         };
@@ -370,7 +384,7 @@ impl Job {
     }
 
     /// The image of a board.
-    fn image(&self, toolchain: &Toolchain, board: Board, log: Option<Level>) -> Result<PathBuf, JobError> {
+    fn image(&self, toolchain: &Toolchain, board: Board, log: Option<Level>) -> Result<Image, JobError> {
         let recipe = Recipe { log, ..self.recipe() };
         eprintln!(
             "building the image for {} on {board} with {}",
@@ -379,18 +393,18 @@ impl Job {
         );
         let image = firmware::build(toolchain, board, &recipe)?;
         eprintln!("{}", image.size);
-        Ok(image.elf)
+        Ok(image)
     }
 }
 
 /// One core a boot block; the boards take turns.
-fn cores(images: &[(Board, PathBuf)], blocks: Vec<Vec<u8>>, capture: Option<&Capture>) -> Vec<Core> {
+fn cores(images: &[(Board, Image)], blocks: Vec<Vec<u8>>, capture: Option<&Capture>) -> Vec<Core> {
     let turns = (0..).zip(images.iter().cycle()).zip(blocks);
-    let core = |((number, (board, elf)), boot_block): ((u16, &(Board, PathBuf)), _)| Core {
+    let core = |((number, (board, image)), boot_block): ((u16, &(Board, Image)), _)| Core {
         capture: capture
             .filter(|capture| capture.core == number)
             .map(|capture| capture.file.clone()),
-        ..Core::new(number, *board, elf, boot_block)
+        ..Core::new(number, *board, &image.elf, boot_block)
     };
     turns.map(core).collect()
 }

@@ -245,7 +245,8 @@ impl FromStr for Reference {
     }
 }
 
-fn samples_per_pixel(text: &str) -> Result<u32, String> {
+/// What `--spp` takes.
+pub fn samples_per_pixel(text: &str) -> Result<u32, String> {
     let samples = text
         .parse::<u32>()
         .ok()

@@ -164,6 +164,7 @@ impl Results<'_> {
             spp: plan.spp,
             cores: options.cores.into(),
             board: self.origin.boards(),
+            images: self.origin.images.clone(),
             backend: self.origin.backend.to_owned(),
             profile: options.profile.name().to_owned(),
             termination: options.termination.to_string(),

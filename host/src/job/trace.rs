@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
 use super::options::{Backend, RenderOptions};
-use super::{Capture, Job, JobError};
+use super::{Capture, Finished, Job, JobError};
 use crate::capture::Tally;
 use crate::fleet::{RESTARTS, capture_of};
 
@@ -20,9 +20,9 @@ pub struct TraceOptions {
     pub render: RenderOptions,
 }
 
-/// Renders a picture, records a core's packets in `core-N.pcap` among the results, and says what is in there. A core that
+/// Renders a picture, records a core's packets in `core-N.pcap` among the results, and says on the terminal what is in there. A core that
 /// was started again has a file for each of its lives: `core-N.pcap`, `core-N.2.pcap` and so on.
-pub fn trace(options: &TraceOptions, interrupted: &AtomicBool) -> Result<(), JobError> {
+pub fn trace(options: &TraceOptions, interrupted: &AtomicBool) -> Result<Finished, JobError> {
     let job = Job::new(&options.render.picture)?;
     job.check_core(options.core)?;
     if options.render.backend != Backend::Qemu {
@@ -43,7 +43,7 @@ pub fn trace(options: &TraceOptions, interrupted: &AtomicBool) -> Result<(), Job
     for file in files.iter().filter(|file| file.exists()) {
         match Tally::of(file) {
             Ok(tally) => println!("{}", describe(options.core, file, &tally)),
-            Err(error) => return end.and(Err(error.into())),
+            Err(error) => return end.and_then(|_| Err(error.into())),
         }
     }
     end

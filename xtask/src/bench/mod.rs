@@ -2,6 +2,7 @@
 
 mod generators;
 mod ops;
+mod trace;
 
 use std::process::ExitCode;
 
@@ -15,11 +16,16 @@ pub(crate) enum Bench {
     /// Instructions are those of an emulated core without the loop around them: once compiled in line, once
     /// called. A star marks what nothing else of the operation beats in cost and in worst error.
     Ops(ops::Arguments),
+    /// Print what a whole sample costs by board, profile and way to end a path, and how wrong it is
+    ///
+    /// Renders the same small picture by each of them. It is the same picture on every board.
+    Trace(trace::Arguments),
 }
 
 pub(crate) fn run(bench: &Bench) -> anyhow::Result<ExitCode> {
     match bench {
         Bench::Generators(arguments) => generators::run(arguments),
         Bench::Ops(arguments) => ops::run(arguments),
+        Bench::Trace(arguments) => trace::run(arguments),
     }
 }

@@ -1,0 +1,60 @@
+//! `cargo xtask bench trace`
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use anyhow::Context;
+use host::board::Board;
+use host::interrupt;
+use host::job::options::Size;
+use host::samples::{self, Series};
+
+use crate::SetUp;
+
+/// Arguments of `bench trace`.
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// Scene file
+    #[arg(default_value = "scenes/cornell.toml")]
+    scene: PathBuf,
+    /// Boards of the cores
+    #[arg(long = "board", value_name = "BOARD,..", value_enum, value_delimiter = ',', default_values_t = Board::ALL)]
+    boards: Vec<Board>,
+    /// Width and height in pixels
+    #[arg(long, value_name = "WxH", default_value = "64x48")]
+    size: Size,
+    /// Samples per pixel in all, a multiple of 4
+    #[arg(long, value_name = "N", default_value = "64", value_parser = host::job::options::samples_per_pixel)]
+    spp: u32,
+    /// Samples per pixel of the reference in double precision, a multiple of 4
+    #[arg(long, value_name = "N", default_value = "512", value_parser = host::job::options::samples_per_pixel)]
+    reference_spp: u32,
+    /// Number of cores
+    #[arg(long, value_name = "N", default_value = "2", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    cores: u16,
+    /// Write the list as JSON, too
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+    #[command(flatten)]
+    set_up: SetUp,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
+    let interrupted = interrupt::watch()?;
+    let series = Series {
+        scene: arguments.scene.clone(),
+        boards: arguments.boards.clone(),
+        size: arguments.size,
+        spp: arguments.spp,
+        reference_spp: arguments.reference_spp,
+        cores: arguments.cores,
+        no_install: arguments.set_up.no_install,
+    };
+    let rows = samples::measure(&series, interrupted)?;
+    println!("{}", samples::table(&rows));
+    if let Some(path) = &arguments.json {
+        let json = serde_json::to_string_pretty(&rows)?;
+        std::fs::write(path, json + "\n").with_context(|| format!("cannot write {}", path.display()))?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
