@@ -5,12 +5,15 @@ use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
 use clap::Parser;
+use host::arithmetic::Arithmetic;
 use host::board::Board;
 use host::collector::{self, Collection, End, Progress};
-use host::firmware::build_examples;
+use host::firmware::{self, Recipe, build_examples};
 use host::fleet::{Core, Fleet, QemuFleet, RESTARTS, run_to_end};
 use host::job::options::RenderOptions;
 use host::job::{Job, boot_blocks};
+use host::log::Level;
+use host::scene::compile;
 use host::session::Route;
 use host::symbols::{Place, explained};
 use tracer::profile::Precise;
@@ -78,9 +81,24 @@ struct Flags {
     options: RenderOptions,
 }
 
-/// Collects the Cornell box from cores with a probe instead of the image that the job would build.
-fn collected(board: Board, name: &str, flags: &str) -> Collection {
-    let elf = probe(board, name);
+/// One of the boards' probes, built with a log if it shall have one.
+fn logging_probe(board: Board, name: &str, log: Option<Level>) -> PathBuf {
+    let recipe = Recipe {
+        profile: Arithmetic::Precise,
+        needs: compile(&cornell(), 4, 3).needs,
+        roulette: true,
+        log,
+    };
+    let mut command = firmware::cargo(&toolchain(), board, "build", &recipe);
+    let output = command.args(["--example", name]).output().unwrap();
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{said}");
+    firmware::example(board, name)
+}
+
+/// Collects the Cornell box from cores with a probe instead of the image that the job would build: what came, and the log.
+fn collected(board: Board, name: &str, log: Option<Level>, flags: &str) -> (Collection, String) {
+    let elf = logging_probe(board, name, log);
     let (scene, out) = (repository("scenes/cornell.toml"), tempfile::tempdir().unwrap());
     let words = [
         "render",
@@ -94,18 +112,26 @@ fn collected(board: Board, name: &str, flags: &str) -> Collection {
     let route = Route::qemu(socket.local_addr().unwrap().port());
     let blocks = (0..).zip(boot_blocks(&session, &route).unwrap());
     let cores: Vec<Core> = blocks
-        .map(|(number, block)| Core::new(number, board, &elf, block))
+        .map(|(number, block)| Core {
+            logs: log.is_some(),
+            ..Core::new(number, board, &elf, block)
+        })
         .collect();
     let mut fleet = Fleet::Qemu(QemuFleet::start(&qemu(), &cores, out.path()).unwrap());
     let (running, mut progress) = (AtomicBool::new(false), Progress::Silent);
-    collector::collect(&session, &socket, &mut fleet, &running, &mut progress).unwrap()
+    let collection = collector::collect(&session, &socket, &mut fleet, &running, &mut progress).unwrap();
+    fleet.end();
+    let log = std::fs::read_to_string(out.path().join("fleet.log"));
+    (collection, log.unwrap_or_default())
 }
 
 #[test]
 fn a_core_that_fails_again_and_again_is_named_and_the_picture_is_complete_without_it() {
     let expected = film::<Precise>(&cornell(), &plan::<Precise>(128, 96, 128)).sha256();
-    for board in Board::ALL {
-        let collection = collected(board, "failing_probe", "--size 128x96 --spp 128 --cores 3");
+    let both = |board| [(board, None), (board, Some(Level::Error))];
+    for (board, log) in Board::ALL.into_iter().flat_map(both) {
+        let flags = "--size 128x96 --spp 128 --cores 3";
+        let (collection, text) = collected(board, "failing_probe", log, flags);
         assert_eq!(collection.end, End::Complete);
         assert_eq!(collection.film.sha256(), expected);
         assert_eq!(collection.packets.lost, 0, "a new life is no loss");
@@ -127,6 +153,15 @@ fn a_core_that_fails_again_and_again_is_named_and_the_picture_is_complete_withou
         }
         for core in others {
             assert_eq!((core.fault(), core.restarts.len()), (None, 0));
+        }
+        // Each of its lives ends with a word in the log, and nothing else went wrong.
+        let lives = if log.is_some() { 1 + RESTARTS } else { 0 };
+        assert_eq!(text.lines().count(), lives, "{text}");
+        for line in text.lines() {
+            assert!(
+                line.contains("core 0  ERROR  undefined instruction at 0x"),
+                "{line}"
+            );
         }
     }
 }

@@ -257,7 +257,7 @@ fn bad_flags_have_one_clear_error_each() {
         (&["--port", port.as_str()], &[port.as_str(), "--port"]),
         (&["no-such-scene.toml"], &["no-such-scene.toml"]),
         (&["--log", "debug"], &["--log", "--backend native"]),
-        (&["--board", "mps2-an385"], &["mps2-an385", "not built yet"]),
+        (&["--board", "z80"], &["z80", "versatilepb, mps2-an385"]),
     ] {
         let (success, text) = xtask(&[&["render", "--backend", "native"], arguments].concat());
         assert!(!success, "{arguments:?}: {text}");
