@@ -78,6 +78,8 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
             "--release",
             "--workspace",
             "--exclude",
+            "runtime",
+            "--exclude",
             "versatilepb",
             "--exclude",
             "mps2-an385",
@@ -118,7 +120,7 @@ fn lint_firmware(toolchain: &Toolchain, scene: &Scene) -> anyhow::Result<()> {
             log,
         };
         let mut command = firmware::cargo(toolchain, board, "clippy", &recipe);
-        command.args(["--", "--deny", "warnings"]);
+        command.args(["--lib", "--bins", "--examples", "--", "--deny", "warnings"]);
         succeed(command)?;
     }
     Ok(())

@@ -7,9 +7,12 @@ use runtime::{Board, Exit};
 /// Says what a test has found out, if anything is worth saying, or what is wrong.
 pub(crate) type Verdict = Result<Option<u64>, &'static str>;
 
+/// A test and its name.
+pub(crate) type Test<State> = (&'static str, fn(&mut State) -> Verdict);
+
 /// Runs tests by their names and ends the program. Says `test NAME ok`, with a number if there is one, or `test NAME FAILED`, and
 /// why.
-pub(crate) fn run<State>(mut state: State, tests: &[(&str, fn(&mut State) -> Verdict)]) -> ! {
+pub(crate) fn run<State>(mut state: State, tests: &[Test<State>]) -> ! {
     let mut failed = 0;
     for (name, test) in tests {
         let mut line = Words::of("test ");
