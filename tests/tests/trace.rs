@@ -217,10 +217,7 @@ fn the_dissector_knows_every_command() {
     }
 }
 
-/// tshark is large, so that `cargo xtask test` does without: `apt-get install tshark`, and
-/// `cargo test --release -p whole-system --test trace -- --ignored`.
 #[test]
-#[ignore = "needs tshark"]
 fn wireshark_sees_every_field_as_the_decoders_do() {
     let out = traced("--size 64x48 --spp 16 --cores 2");
     let names = "padding flags tag dest_port_cpu srce_port_cpu dest_y dest_x srce_y srce_x cmd_rc seq arg1 arg2 arg3 core data";

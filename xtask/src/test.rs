@@ -28,6 +28,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
         firmware: true,
         lints: true,
         gdb: true,
+        tshark: true,
         ..Wanted::default()
     };
     let tools = step("set-up", || {
@@ -95,8 +96,12 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
             "test",
             "--quiet",
             "--release",
+            "--no-fail-fast",
             "--package",
             "whole-system",
+            "--",
+            // Tests on the cores report one by one, and others give their figures.
+            "--show-output",
         ]))
     })?;
     step("documentation", || {

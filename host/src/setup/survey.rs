@@ -27,6 +27,7 @@ pub fn survey() -> Facts {
         qemu: program("qemu-system-arm"),
         dieharder: program("dieharder"),
         gdb: program("gdb-multiarch"),
+        tshark: program("tshark"),
         linker: sysroots
             .iter()
             .find_map(|sysroot| bundled_linker(sysroot))

@@ -1,0 +1,107 @@
+//! Every board draws the same picture, of every scene and by every profile.
+//!
+//! QEMU and the firmware's compiler must be there; `cargo xtask test` sees to that first.
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+
+use clap::Parser;
+use host::arithmetic::Arithmetic;
+use host::board::Board;
+use host::job::options::{RenderOptions, Size};
+use host::job::render;
+use host::samples::{Series, measure};
+use host::scene::Scene;
+use tracer::profile::Precise;
+use whole_system::{film, plan, repository};
+
+#[derive(Parser)]
+struct Flags {
+    #[command(flatten)]
+    options: RenderOptions,
+}
+
+fn scenes() -> Vec<PathBuf> {
+    let folders = ["scenes", "tests/scenes"].map(|folder| std::fs::read_dir(repository(folder)).unwrap());
+    let files = folders.into_iter().flatten().map(|file| file.unwrap().path());
+    let scenes: Vec<PathBuf> = files
+        .filter(|path| path.extension().is_some_and(|extension| extension == "toml"))
+        .collect();
+    assert!(scenes.len() > 3, "{scenes:?}");
+    scenes
+}
+
+/// The picture's hash that a fleet of one board gives.
+fn sha256(scene: &Path, board: Board, out: &Path) -> String {
+    let words = ["render", scene.to_str().unwrap(), "--out", out.to_str().unwrap()];
+    let flags = "--size 20x16 --spp 8 --cores 1 --reference none --board";
+    let options = Flags::parse_from(words.into_iter().chain(flags.split(' ')).chain([board.name()])).options;
+    let finished = render(&options, &AtomicBool::new(false)).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(finished.report.board.as_deref(), Some(board.name()));
+    finished.report.image_sha256
+}
+
+#[test]
+fn every_scene_is_the_same_picture_on_every_board_and_on_the_host() {
+    let out = tempfile::tempdir().unwrap();
+    for path in scenes() {
+        let scene = Scene::load(&path).unwrap();
+        let expected = film::<Precise>(&scene, &plan::<Precise>(20, 16, 8)).sha256();
+        for board in Board::ALL {
+            let found = sha256(&path, board, out.path());
+            assert_eq!(found, expected, "{} on {board}", path.display());
+            println!("{} on {board}: {found}", path.display());
+        }
+    }
+}
+
+/// The list itself fails where boards disagree.
+#[test]
+fn what_a_sample_costs_is_told_for_every_board_and_profile() {
+    let series = Series {
+        scene: repository("scenes/cornell.toml"),
+        boards: Board::ALL.to_vec(),
+        size: Size {
+            width: 16,
+            height: 12,
+        },
+        spp: 16,
+        reference_spp: 64,
+        cores: 1,
+        no_install: true,
+    };
+    let rows = measure(&series, &AtomicBool::new(false)).unwrap_or_else(|error| panic!("{error}"));
+    println!("{}", host::samples::table(&rows));
+    assert_eq!(rows.len(), 2 * 2 * Board::ALL.len());
+    let cost = |profile: Arithmetic, board| {
+        let of = |row: &&host::samples::Row| {
+            (row.profile.as_str(), row.termination.as_str(), row.board) == (profile.name(), "roulette", board)
+        };
+        rows.iter()
+            .find(of)
+            .and_then(|row| row.instructions_per_sample)
+            .expect("a cost")
+    };
+    for board in Board::ALL {
+        // Ours is no less than five times as fast as the published choices, whatever the processor.
+        assert!(
+            5.0 * cost(Arithmetic::Precise, board) < cost(Arithmetic::Paper, board),
+            "{board}"
+        );
+    }
+    let json = serde_json::to_value(&rows[0]).unwrap();
+    for key in [
+        "board",
+        "profile",
+        "scene",
+        "termination",
+        "instructions_per_sample",
+        "cycles_per_sample",
+        "rays_per_sample",
+        "bias",
+        "rmse",
+    ] {
+        assert!(json.get(key).is_some(), "{key}");
+    }
+    assert!(json["cycles_per_sample"].is_null() && rows.iter().all(|row| row.bias.is_some()));
+}
