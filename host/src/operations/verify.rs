@@ -6,7 +6,6 @@
 
 use std::any::{Any, TypeId};
 use std::iter;
-use std::ops::Range;
 
 use fixedmath::random::Lcg64;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -76,11 +75,24 @@ pub fn verify(
     for group in Group::ALL {
         group.show(&mut subjects);
     }
-    progress.tasks(subjects.list.iter().map(|subject| subject.tasks(depth)).sum());
+    let tasks = subjects
+        .list
+        .iter()
+        .map(|subject| subject.sources(depth).count() as u64);
+    progress.tasks(tasks.sum());
     let mut figures: Vec<Option<Figures>> = vec![None; rows.len()];
     for subject in &subjects.list {
-        for (row, found) in subject.judge(depth, progress) {
-            figures[row] = found;
+        let sources: Vec<Source> = subject.sources(depth).collect();
+        let tallies: Vec<Vec<Tally>> = sources
+            .into_par_iter()
+            .map(|source| {
+                let tallies = subject.judge(source);
+                progress.done();
+                tallies
+            })
+            .collect();
+        for (place, row) in subject.rows().into_iter().enumerate() {
+            figures[row] = Tally::figures(tallies.iter().map(|tallies| &tallies[place]));
         }
     }
     rows.into_iter()
@@ -148,70 +160,47 @@ impl Visitor for Subjects {
     }
 }
 
-type Judge<O> = fn(&Chunk<O>, &mut Tally<<O as Operation>::Input>);
+type Judge<O> = fn(&Chunk<O>, &mut Tally);
 
 /// The rows of one operation: which of all they are, and how to judge them.
 struct Rows<O: Operation>(Vec<(usize, Judge<O>)>);
 
-trait Subject: Any {
-    fn tasks(&self, depth: Depth) -> u64;
-    fn judge(&self, depth: Depth, progress: &(dyn Progress + Sync)) -> Vec<(usize, Option<Figures>)>;
+/// An operation, whichever it is: what runs in parallel is compiled once for all.
+trait Subject: Any + Sync {
+    fn rows(&self) -> Vec<usize>;
+    fn sources(&self, depth: Depth) -> Box<dyn Iterator<Item = Source>>;
+    /// What one task finds about each of the rows.
+    fn judge(&self, source: Source) -> Vec<Tally>;
 }
 
 impl<O: Operation> Subject for Rows<O> {
-    fn tasks(&self, depth: Depth) -> u64 {
-        let plan = Plan::of::<O>(depth);
-        (plan.bits.len() + plan.drawn.len() + plan.hard.len()) as u64
+    fn rows(&self) -> Vec<usize> {
+        self.0.iter().map(|&(row, _)| row).collect()
     }
 
-    fn judge(&self, depth: Depth, progress: &(dyn Progress + Sync)) -> Vec<(usize, Option<Figures>)> {
-        let Plan { bits, drawn, hard } = Plan::of::<O>(depth);
-        let sources = bits.map(Source::Bits).collect::<Vec<_>>().into_par_iter();
-        let sources = sources
-            .chain(drawn.into_par_iter().map(Source::Drawn))
-            .chain(hard.into_par_iter().map(Source::Hard));
-        let tallies: Vec<Vec<Tally<O::Input>>> = sources
-            .map(|source| {
-                let chunk = Chunk::<O>::of(source);
-                let mut tallies = vec![Tally::default(); self.0.len()];
-                for ((_, judge), tally) in self.0.iter().zip(&mut tallies) {
-                    judge(&chunk, tally);
-                }
-                progress.done();
-                tallies
-            })
-            .collect();
-        let row = |(place, &(row, _)): (usize, &(usize, Judge<O>))| {
-            let parts = tallies.iter().map(|tallies| &tallies[place]);
-            (row, Tally::figures(parts))
-        };
-        self.0.iter().enumerate().map(row).collect()
-    }
-}
-
-/// Tasks by where their inputs come from.
-struct Plan {
-    bits: Range<u32>,
-    drawn: Range<u32>,
-    hard: Range<u32>,
-}
-
-impl Plan {
-    fn of<O: Operation>(depth: Depth) -> Self {
+    fn sources(&self, depth: Depth) -> Box<dyn Iterator<Item = Source>> {
         let every = O::Input::of_bits(0).is_some();
         let (bits, drawn, hard) = match depth {
             Depth::Sampled => (0, 16, 4),
             Depth::Exhaustive if every => (1 << 16, 0, 0),
             Depth::Exhaustive => (0, 1_000_000_000 / TASK + 1, 1000),
         };
-        Self {
-            bits: 0..bits,
-            drawn: 0..drawn,
-            hard: 0..hard,
+        let bits = (0..bits).map(Source::Bits);
+        let drawn = (0..drawn).map(Source::Drawn);
+        Box::new(bits.chain(drawn).chain((0..hard).map(Source::Hard)))
+    }
+
+    fn judge(&self, source: Source) -> Vec<Tally> {
+        let chunk = Chunk::<O>::of(source);
+        let mut tallies = vec![Tally::default(); self.0.len()];
+        for ((_, judge), tally) in self.0.iter().zip(&mut tallies) {
+            judge(&chunk, tally);
         }
+        tallies
     }
 }
 
+/// Where the inputs of a task come from.
 #[derive(Clone, Copy)]
 enum Source {
     Bits(u32),
@@ -266,7 +255,7 @@ fn truth_about(oracle: Oracle, given: &impl Number) -> [Real; RESULTS] {
 }
 
 /// Sums up the errors of a row over a chunk.
-fn judge<V: Variant>(chunk: &Chunk<V::Operation>, tally: &mut Tally<OperationInput<V>>) {
+fn judge<V: Variant>(chunk: &Chunk<V::Operation>, tally: &mut Tally) {
     let Some(oracle) = truth::oracle(V::FUNCTION) else {
         return;
     };
@@ -326,32 +315,22 @@ pub(super) fn can_be_exhausted<V: Variant>() -> bool {
 }
 
 /// Errors, summed up.
-#[derive(Clone, Debug)]
-struct Tally<I> {
+#[derive(Clone, Debug, Default)]
+struct Tally {
     cases: u64,
     max: f64,
     sum: f64,
-    worst: Option<I>,
+    /// The words of the first input with the largest error; none before the first case.
+    worst: Option<Vec<u32>>,
 }
 
-impl<I> Default for Tally<I> {
-    fn default() -> Self {
-        Self {
-            cases: 0,
-            max: 0.0,
-            sum: 0.0,
-            worst: None,
-        }
-    }
-}
-
-impl<I: Number> Tally<I> {
-    fn see(&mut self, error: f64, input: I) {
+impl Tally {
+    fn see(&mut self, error: f64, input: impl Number) {
         self.cases += 1;
         self.sum += error;
         if error > self.max || self.worst.is_none() {
             self.max = error;
-            self.worst = Some(input);
+            self.worst = Some(words(input));
         }
     }
 
@@ -363,19 +342,23 @@ impl<I: Number> Tally<I> {
             whole.sum += part.sum;
             if part.max > whole.max || whole.worst.is_none() {
                 whole.max = part.max;
-                whole.worst = part.worst;
+                whole.worst.clone_from(&part.worst);
             }
         }
-        let mut worst_input = Vec::new();
-        whole.worst?.through(&mut |word| {
-            worst_input.push(word);
-            word
-        });
         Some(Figures {
             cases: whole.cases,
             max_error: whole.max,
             mean_error: whole.sum / whole.cases as f64,
-            worst_input,
+            worst_input: whole.worst?,
         })
     }
+}
+
+fn words(input: impl Number) -> Vec<u32> {
+    let mut words = Vec::new();
+    input.through(&mut |word| {
+        words.push(word);
+        word
+    });
+    words
 }
