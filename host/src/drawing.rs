@@ -5,14 +5,13 @@
 
 use std::path::Path;
 
-use image::ImageEncoder;
-use image::codecs::png::PngEncoder;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::register_font;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use crate::file::{WriteError, write_whole};
+use crate::raster::Raster;
 
 pub(crate) type Canvas<'a> = DrawingArea<BitMapBackend<'a>, Shift>;
 pub(crate) type DrawingError = Box<dyn std::error::Error + Send + Sync>;
@@ -32,13 +31,6 @@ const DIVERGING: [[f64; 3]; 5] = [
     [214.0, 96.0, 77.0],
     [103.0, 0.0, 31.0],
 ];
-
-/// Pixels of a finished drawing.
-pub(crate) struct Raster {
-    pub(crate) width: u32,
-    pub(crate) height: u32,
-    pub(crate) rgb: Vec<u8>,
-}
 
 /// Draws on white.
 pub(crate) fn draw_on(
@@ -64,15 +56,7 @@ pub(crate) fn write_png(
     draw: impl FnOnce() -> Result<Raster, DrawingError>,
 ) -> Result<(), WriteError> {
     write_whole(path, |writer| {
-        let drawing = draw()?;
-        PngEncoder::new(writer)
-            .write_image(
-                &drawing.rgb,
-                drawing.width,
-                drawing.height,
-                image::ExtendedColorType::Rgb8,
-            )
-            .map_err(DrawingError::from)
+        draw()?.write_png(writer).map_err(DrawingError::from)
     })
 }
 

@@ -28,6 +28,7 @@ pub mod memory;
 pub mod openexr;
 pub mod operations;
 pub mod picture;
+mod raster;
 pub mod reference;
 pub mod report;
 pub mod samples;

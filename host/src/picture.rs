@@ -2,10 +2,8 @@
 
 use std::path::Path;
 
-use image::ImageEncoder;
-use image::codecs::png::PngEncoder;
-
 use crate::file::{WriteError, write_whole};
+use crate::raster::Raster;
 
 /// Radiance of every pixel, row-major from the top row.
 #[derive(Clone, Debug, PartialEq)]
@@ -83,15 +81,12 @@ impl Picture {
 
     /// Writes what [`Picture::display`] says as a PNG file.
     pub fn write_png(&self, path: &Path) -> Result<(), WriteError> {
-        let (width, height) = (u32::from(self.width), u32::from(self.height));
-        write_whole(path, |writer| {
-            PngEncoder::new(writer).write_image(
-                &self.display(),
-                width,
-                height,
-                image::ExtendedColorType::Rgb8,
-            )
-        })
+        let raster = Raster {
+            width: self.width.into(),
+            height: self.height.into(),
+            rgb: self.display(),
+        };
+        write_whole(path, |writer| raster.write_png(writer))
     }
 }
 
@@ -106,6 +101,9 @@ fn to_8_bits(radiance: f64) -> u8 {
 
 #[cfg(test)]
 mod tests {
+    use std::fs::File;
+    use std::io::BufReader;
+
     use super::*;
 
     #[test]
@@ -134,12 +132,14 @@ mod tests {
         let path = folder.path().join("image.png");
         let picture = Picture::new(2, 1, vec![Some([0.25, 0.5, 0.75]), None]);
         picture.write_png(&path).unwrap();
-        let decoded = image::load_from_memory(&std::fs::read(path).unwrap())
-            .unwrap()
-            .into_rgb8();
+        let file = BufReader::new(File::open(path).unwrap());
+        let mut decoder = png::Decoder::new(file).read_info().unwrap();
+        let mut pixels = vec![0; decoder.output_buffer_size().unwrap()];
+        let frame = decoder.next_frame(&mut pixels).unwrap();
         assert_eq!(
-            (decoded.dimensions(), decoded.into_raw()),
-            ((2, 1), picture.display())
+            (frame.width, frame.height, frame.color_type, frame.bit_depth),
+            (2, 1, png::ColorType::Rgb, png::BitDepth::Eight)
         );
+        assert_eq!(pixels, picture.display());
     }
 }

@@ -11,11 +11,12 @@ use plotters::style::text_anchor::{HPos, VPos};
 
 use crate::compare::{Comparison, SIDE};
 use crate::drawing::{
-    Canvas, DrawingError, GAP, LARGE, MARGIN, NORMAL, Raster, SMALL, blit, diverging, draw_on, enlarged,
-    outline, signed, text, write_png,
+    Canvas, DrawingError, GAP, LARGE, MARGIN, NORMAL, SMALL, blit, diverging, draw_on, enlarged, outline,
+    signed, text, write_png,
 };
 use crate::file::WriteError;
 use crate::picture::Picture;
+use crate::raster::Raster;
 
 /// What the map is enlarged to fill, by a whole factor.
 const MAP: (u32, u32) = (768, 576);

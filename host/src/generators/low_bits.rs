@@ -12,10 +12,11 @@ use crate::compare::{CompareError, Comparison, compare};
 use crate::difference::differences;
 use crate::direct;
 use crate::drawing::{
-    DrawingError, GAP, MARGIN, NORMAL, Raster, blit, diverging, draw_on, enlarged, signed, text, write_png,
+    DrawingError, GAP, MARGIN, NORMAL, blit, diverging, draw_on, enlarged, signed, text, write_png,
 };
 use crate::file::WriteError;
 use crate::picture::{Estimate, Picture};
+use crate::raster::Raster;
 use crate::scene::{Scene, compile};
 
 /// `precise` in everything but its random numbers, which are those of `paper`.

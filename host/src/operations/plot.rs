@@ -4,8 +4,6 @@ use std::io::Write as _;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
-use image::ImageEncoder;
-use image::codecs::png::PngEncoder;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::register_font;
@@ -16,6 +14,7 @@ use super::anchors::{self, ANCHORS, Anchor};
 use super::table::{grouped, is_on_front};
 use crate::board::Board;
 use crate::file::{WriteError, write_whole};
+use crate::raster::Raster;
 
 /// The built-in font, under the name that a browser replaces by its own.
 const FONT: &str = "sans-serif";
@@ -86,7 +85,7 @@ fn png(rows: &[Row]) -> Result<Vec<u8>, DrawingError> {
         board_of(rows),
     )?;
     let mut bytes = Vec::new();
-    PngEncoder::new(&mut bytes).write_image(&rgb, width, height, image::ExtendedColorType::Rgb8)?;
+    Raster { width, height, rgb }.write_png(&mut bytes)?;
     Ok(bytes)
 }
 
