@@ -217,14 +217,8 @@ pub(crate) mod tests {
 
     /// A frame as a core sends it.
     pub(crate) fn frame(index: u16, micros: u64, arguments: &[u8]) -> Vec<u8> {
-        let (mut encoder, mut bytes) = (defmt::Encoder::new(), Vec::new());
-        let mut send = |sent: &[u8]| bytes.extend_from_slice(sent);
-        encoder.start_frame(&mut send);
-        for part in [&index.to_le_bytes()[..], &micros.to_le_bytes(), arguments] {
-            encoder.write(part, &mut send);
-        }
-        encoder.end_frame(&mut send);
-        bytes
+        let parts = [&index.to_le_bytes()[..], &micros.to_le_bytes(), arguments];
+        [&[0], &rzcobs::encode(&parts.concat())[..], &[0]].concat()
     }
 
     fn unit(number: u32) -> Vec<u8> {

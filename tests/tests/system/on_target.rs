@@ -1,6 +1,6 @@
 //! Tests that run on the cores themselves, on every board: their console says how each of them ended.
 
-#[path = "../../firmware/probes/shared/wire_cases.rs"]
+#[path = "../../../firmware/probes/shared/wire_cases.rs"]
 mod wire_cases;
 
 use std::io;

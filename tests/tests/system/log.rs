@@ -1,6 +1,4 @@
 //! The cores' log: away when nobody asked for it, and when somebody did, all that the level says, from the right core and place.
-//!
-//! QEMU and the firmware's compiler must be there; `cargo xtask test` sees to that first.
 
 use std::collections::{BTreeMap, HashSet};
 use std::path::Path;

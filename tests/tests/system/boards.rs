@@ -1,6 +1,4 @@
 //! Every board draws the same picture, of every scene and by every profile.
-//!
-//! QEMU and the firmware's compiler must be there; `cargo xtask test` sees to that first.
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;

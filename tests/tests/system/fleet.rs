@@ -1,6 +1,4 @@
 //! Fleets of emulated cores, from the outside: what the command leaves in its folder, whatever happens to the cores.
-//!
-//! QEMU and the firmware's compiler must be there; `cargo xtask test` sees to that first.
 
 use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};

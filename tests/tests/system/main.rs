@@ -1,0 +1,13 @@
+//! Everything from the outside, with the firmware's compiler and QEMU, which must be there: `cargo xtask test` sees to that
+//! first. It is one program so that the tests that wait for something leave the processors to the others.
+
+mod boards;
+mod debugger;
+mod faults;
+mod fleet;
+mod image;
+mod log;
+mod on_target;
+mod operations;
+mod processes;
+mod trace;
