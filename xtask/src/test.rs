@@ -53,6 +53,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
         // All in one command, because the compiler's own library takes one processor of the host for each.
         for board in Board::ALL {
             build.args(["--target", board.target()]);
+            build.envs(firmware::environment(&toolchain, board.target()));
         }
         succeed(build)?;
         succeed(cargo(&[
