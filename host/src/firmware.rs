@@ -11,6 +11,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::{env, fmt};
 
+use object::elf::SHF_ALLOC;
 use object::{Object, ObjectSection, ObjectSegment, ObjectSymbol, SectionFlags};
 use serde::{Deserialize, Serialize};
 
@@ -370,8 +371,7 @@ pub fn measure(board: Board, elf: &[u8]) -> Result<ImageSize, String> {
 }
 
 fn is_allocated<'d>(section: &impl ObjectSection<'d>) -> bool {
-    const SHF_ALLOC: u64 = 2;
-    matches!(section.flags(), SectionFlags::Elf { sh_flags } if sh_flags & SHF_ALLOC != 0)
+    matches!(section.flags(), SectionFlags::Elf { sh_flags, .. } if sh_flags.contains(SHF_ALLOC))
 }
 
 /// Whether a symbol is a routine of a soft-float library, by the names of the ARM run-time ABI and of compilers' own libraries.

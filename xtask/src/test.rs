@@ -1,7 +1,9 @@
 //! `cargo xtask test`
 
+use std::panic::resume_unwind;
 use std::path::Path;
 use std::process::{Command, ExitCode, Stdio};
+use std::thread;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, bail};
@@ -36,6 +38,41 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
     })?;
     let toolchain = tools.firmware.context("set-up gave no compiler")?;
     let scene = Scene::load(&firmware::workspace().join("scenes/cornell.toml"))?;
+    let rows = thread::scope(|scope| {
+        // Much of what a compiler does takes one processor: the host's and the firmware's work side by side, each in a target
+        // folder of its own.
+        let firmware = scope.spawn(|| firmware_steps(&toolchain, &scene));
+        let host = host_steps();
+        let firmware = firmware.join().unwrap_or_else(|panic| resume_unwind(panic));
+        match (host, firmware) {
+            (Err(host), Err(firmware)) => bail!("{host:#}\n\n{firmware:#}"),
+            (host, firmware) => host.and(firmware),
+        }
+    })?;
+    println!("{}", size::table(&rows));
+    step("whole system", || {
+        shown(cargo(&[
+            "test",
+            "--quiet",
+            "--release",
+            "--no-fail-fast",
+            "--package",
+            "whole-system",
+            "--",
+            // Tests on the cores report one by one, and others give their figures.
+            "--show-output",
+        ]))
+    })?;
+    step("documentation", || {
+        let mut command = cargo(&["doc", "--release", "--no-deps"]);
+        command.env("RUSTDOCFLAGS", "--deny warnings");
+        succeed(command)
+    })?;
+    println!("all passed in {}", seconds(start.elapsed()));
+    Ok(ExitCode::SUCCESS)
+}
+
+fn host_steps() -> anyhow::Result<()> {
     step("format", || succeed(cargo(&["fmt", "--all", "--check"])))?;
     step("lints", || {
         // As a release build, whose procedural macros and build scripts the tests need anyway.
@@ -48,13 +85,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
             "warnings",
         ]))
     })?;
-    step("fixedmath for a Cortex-M0, and as a package", || {
-        succeed(firmware::cargo_for(
-            &toolchain,
-            "build",
-            "fixedmath",
-            "thumbv6m-none-eabi",
-        ))?;
+    step("fixedmath as a package", || {
         succeed(cargo(&[
             "package",
             "--quiet",
@@ -64,7 +95,6 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
             "fixedmath",
         ]))
     })?;
-    step("firmware lints", || lint_firmware(&toolchain, &scene))?;
     // With overflow checks and debug assertions, where arithmetic could wrap or panic in one build and not in the other.
     step("tests, checked build", || {
         shown(cargo(&[
@@ -100,29 +130,20 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
         // Alone, it is tested with the host's library that it was built with: the others' tests need another one.
         shown(cargo(&["test", "--quiet", "--release", "--package", "xtask"]))
     })?;
-    step("arithmetic against the truth", || verify::sampled().map(|_| ()))?;
-    let rows = step("firmware", || size::measure(&toolchain, &scene))?;
-    println!("{}", size::table(&rows));
-    step("whole system", || {
-        shown(cargo(&[
-            "test",
-            "--quiet",
-            "--release",
-            "--no-fail-fast",
-            "--package",
-            "whole-system",
-            "--",
-            // Tests on the cores report one by one, and others give their figures.
-            "--show-output",
-        ]))
+    step("arithmetic against the truth", || verify::sampled().map(|_| ()))
+}
+
+fn firmware_steps(toolchain: &Toolchain, scene: &Scene) -> anyhow::Result<Vec<size::Row>> {
+    step("fixedmath for a Cortex-M0", || {
+        succeed(firmware::cargo_for(
+            toolchain,
+            "build",
+            "fixedmath",
+            "thumbv6m-none-eabi",
+        ))
     })?;
-    step("documentation", || {
-        let mut command = cargo(&["doc", "--release", "--no-deps"]);
-        command.env("RUSTDOCFLAGS", "--deny warnings");
-        succeed(command)
-    })?;
-    println!("all passed in {}", seconds(start.elapsed()));
-    Ok(ExitCode::SUCCESS)
+    step("firmware lints", || lint_firmware(toolchain, scene))?;
+    step("firmware", || size::measure(toolchain, scene))
 }
 
 /// Lints the boards' crates with the compiler that builds them, without a log and with all of it.
