@@ -58,8 +58,10 @@ pub struct Row {
     pub bias: Option<f64>,
     /// The same against the same paths in double precision: of arithmetic alone.
     pub lockstep_bias: Option<f64>,
-    /// Noise-corrected root of the mean squared error.
+    /// Noise-corrected root of the mean squared error; 0 where noise hides it.
     pub rmse: Option<f64>,
+    /// The largest `rmse` that the noise leaves room for: two standard errors up.
+    pub rmse_at_most: Option<f64>,
     /// The picture, which is the same on every board.
     pub image_sha256: String,
 }
@@ -149,6 +151,7 @@ impl Row {
             bias: report.error.bias,
             lockstep_bias: report.lockstep_error.and_then(|lockstep| lockstep.bias),
             rmse: report.error.rmse,
+            rmse_at_most: report.error.rmse_at_most,
             image_sha256: report.image_sha256.clone(),
         }
     }
@@ -158,7 +161,7 @@ impl Row {
 pub fn table(rows: &[Row]) -> String {
     let mut lines = vec![format!(
         "{:8} {:10} {:12} {:>8} {:>15} {:>8} {:>10} {:>16} {:>9}",
-        "profile", "paths", "board", "code", "instructions", "rays", "bias", "arithmetic bias", "rmse"
+        "profile", "paths", "board", "code", "instructions", "rays", "bias", "arithmetic bias", "rmse <="
     )];
     let percent =
         |share: Option<f64>| share.map_or("-".to_owned(), |share| format!("{:+.3} %", 100.0 * share));
@@ -175,7 +178,7 @@ pub fn table(rows: &[Row]) -> String {
             figure(row.rays_per_sample, 2),
             percent(row.bias),
             percent(row.lockstep_bias),
-            figure(row.rmse, 5),
+            figure(row.rmse_at_most, 5),
         )
     }));
     lines.join("\n")

@@ -101,7 +101,7 @@ fn tiles_see_a_glass_ball_of_the_wrong_index() {
             *index = 1.3;
         }
     }
-    let (precise, _) = estimate::<Precise>(&wrong, &plan::<Precise>(64, 48, 4096));
+    let (precise, _) = estimate::<Precise>(&wrong, &plan::<Precise>(64, 48, 2048));
     let found = compare(&precise, small_reference()).unwrap();
     show("index 1.3", &found);
     assert!(found.bias.unwrap().abs() < 0.01, "the mean alone would not tell");
