@@ -221,8 +221,10 @@ impl Results<'_> {
                 .bias_standard_error
                 .map(|noise| format!(" (standard error {:.3} %)", 100.0 * noise));
             let rmse = error.rmse.map(|rmse| format!(", rmse {rmse:.5}"));
-            let (noise, rmse) = (noise.unwrap_or_default(), rmse.unwrap_or_default());
-            line("bias", format!("{:+.3} %{noise}{rmse}", 100.0 * bias));
+            // Where noise hides the error, the bound is what can be said of it.
+            let most = error.rmse_at_most.map(|most| format!(" (at most {most:.5})"));
+            let [noise, rmse, most] = [noise, rmse, most].map(Option::unwrap_or_default);
+            line("bias", format!("{:+.3} %{noise}{rmse}{most}", 100.0 * bias));
         }
         if let Some(tiles) = &error.tiles {
             let (failed, tested, bound) = (tiles.failed, tiles.tested, tiles.threshold_z);

@@ -1,4 +1,4 @@
-//! Hands the linker its scripts: `link.x` is cortex-m-rt's, and includes `memory.x`.
+//! Every board's build script. It hands the linker its scripts: `link.x` is the start-up crate's, and includes the board's `memory.x`.
 
 use std::env;
 
