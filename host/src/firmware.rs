@@ -191,11 +191,12 @@ pub fn build(toolchain: &Toolchain, board: Board, recipe: &Recipe) -> Result<Ima
     }
 }
 
-/// Builds examples of a board's crate, which need no scene, and says where their ELF files are.
+/// Builds examples of a board's crate, which need no scene, with a log if they shall have one, and says where their ELF files are.
 pub fn build_examples(
     toolchain: &Toolchain,
     board: Board,
     names: &[String],
+    log: Option<Level>,
 ) -> Result<Vec<PathBuf>, FirmwareError> {
     let recipe = Recipe {
         profile: Arithmetic::Precise,
@@ -205,7 +206,7 @@ pub fn build_examples(
             glass: true,
         },
         roulette: true,
-        log: None,
+        log,
     };
     let mut command = cargo(toolchain, board, "build", &recipe);
     for name in names {

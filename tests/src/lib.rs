@@ -4,9 +4,11 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::sync::OnceLock;
 
+use host::board::Board;
 use host::direct;
 use host::film::Film;
 use host::firmware;
+use host::log::Level;
 use host::picture::Estimate;
 use host::scene::{Scene, compile};
 use host::setup::{self, Install, Toolchain, Wanted};
@@ -81,6 +83,15 @@ pub fn qemu() -> PathBuf {
     };
     let tools = setup::ensure(wanted, Install::Forbidden).unwrap_or_else(|error| panic!("{error}"));
     tools.qemu.expect("set-up gives what is wanted")
+}
+
+/// One of the boards' probes, built, with a log if it shall have one.
+///
+/// # Panics
+/// If it does not build.
+pub fn probe(board: Board, name: &str, log: Option<Level>) -> PathBuf {
+    let elfs = firmware::build_examples(&toolchain(), board, &[name.to_owned()], log);
+    elfs.unwrap_or_else(|error| panic!("{error}")).remove(0)
 }
 
 /// One of the workspace's programs, built as users build it.

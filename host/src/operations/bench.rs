@@ -93,7 +93,7 @@ pub fn measure(
     groups: &[Group],
 ) -> Result<Vec<Measurement>, BenchError> {
     let names: Vec<String> = groups.iter().map(|&group| image_name(group)).collect();
-    let images = firmware::build_examples(toolchain, board, &names)?;
+    let images = firmware::build_examples(toolchain, board, &names, None)?;
     let pairs: Vec<(Group, PathBuf)> = groups.iter().copied().zip(images).collect();
     let groups: Vec<Vec<Measurement>> = pairs
         .into_par_iter()

@@ -1,30 +1,20 @@
 //! Cores that fail: it is said where in the source, and the fleet goes on.
 
 use std::net::Ipv4Addr;
-use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
 use clap::Parser;
-use host::arithmetic::Arithmetic;
 use host::board::Board;
 use host::collector::{self, Collection, End, Progress};
-use host::firmware::{self, Recipe, build_examples};
 use host::fleet::{Core, Fleet, QemuFleet, RESTARTS, run_to_end};
 use host::job::options::RenderOptions;
 use host::job::{Job, boot_blocks};
 use host::log::Level;
-use host::scene::compile;
 use host::session::Route;
 use host::symbols::{Place, explained};
 use tracer::profile::Precise;
-use whole_system::{cornell, film, plan, qemu, repository, toolchain};
+use whole_system::{cornell, film, plan, probe, qemu, repository};
 use wire::LastWords;
-
-/// One of the boards' probes, built.
-fn probe(board: Board, name: &str) -> PathBuf {
-    let elfs = build_examples(&toolchain(), board, &[name.to_owned()]);
-    elfs.unwrap_or_else(|error| panic!("{error}")).remove(0)
-}
 
 /// The address that a core's last words name.
 fn address(words: &str) -> u32 {
@@ -35,7 +25,7 @@ fn address(words: &str) -> u32 {
 #[test]
 fn the_address_of_a_fault_is_one_of_the_probe_s_own_lines() {
     for board in Board::ALL {
-        let elf = probe(board, "exception_probe");
+        let elf = probe(board, "exception_probe", None);
         let output = run_to_end(&qemu(), board, &elf).unwrap();
         let said = String::from_utf8_lossy(&output.stdout).into_owned();
         let place = Place::of(&elf, address(&said)).unwrap();
@@ -57,7 +47,7 @@ fn the_address_of_a_fault_is_one_of_the_probe_s_own_lines() {
 #[test]
 fn a_panic_is_traced_to_its_function_by_the_line_it_names() {
     for board in Board::ALL {
-        let elf = probe(board, "panic_probe");
+        let elf = probe(board, "panic_probe", None);
         let output = run_to_end(&qemu(), board, &elf).unwrap();
         let said = String::from_utf8_lossy(&output.stdout).into_owned();
         let words = LastWords {
@@ -81,24 +71,9 @@ struct Flags {
     options: RenderOptions,
 }
 
-/// One of the boards' probes, built with a log if it shall have one.
-fn logging_probe(board: Board, name: &str, log: Option<Level>) -> PathBuf {
-    let recipe = Recipe {
-        profile: Arithmetic::Precise,
-        needs: compile(&cornell(), 4, 3).needs,
-        roulette: true,
-        log,
-    };
-    let mut command = firmware::cargo(&toolchain(), board, "build", &recipe);
-    let output = command.args(["--example", name]).output().unwrap();
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{said}");
-    firmware::example(board, name)
-}
-
 /// Collects the Cornell box from cores with a probe instead of the image that the job would build: what came, and the log.
 fn collected(board: Board, name: &str, log: Option<Level>, flags: &str) -> (Collection, String) {
-    let elf = logging_probe(board, name, log);
+    let elf = probe(board, name, log);
     let (scene, out) = (repository("scenes/cornell.toml"), tempfile::tempdir().unwrap());
     let words = [
         "render",

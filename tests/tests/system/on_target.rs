@@ -5,23 +5,16 @@ mod wire_cases;
 
 use std::io;
 use std::net::UdpSocket;
-use std::path::PathBuf;
 use std::process::Output;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::Duration;
 
 use host::board::Board;
-use host::firmware::build_examples;
 use host::fleet::{run_to_end, run_with_peer};
 use host::operations::bench::measure;
 use operations::Group;
-use whole_system::{qemu, toolchain};
-
-fn image(board: Board, name: &str) -> PathBuf {
-    let built = build_examples(&toolchain(), board, &[name.to_owned()]);
-    built.unwrap_or_else(|error| panic!("{error}")).remove(0)
-}
+use whole_system::{probe, qemu, toolchain};
 
 /// The tests that a core has passed, with what they have found.
 fn passed(board: Board, output: &Output) -> Vec<(String, Option<u64>)> {
@@ -48,7 +41,7 @@ fn passed(board: Board, output: &Output) -> Vec<(String, Option<u64>)> {
 #[test]
 fn the_wire_and_the_stack_mark_are_right_on_every_core() {
     for board in Board::ALL {
-        let elf = image(board, "core_tests");
+        let elf = probe(board, "core_tests", None);
         let output = run_to_end(&qemu(), board, &elf).expect("QEMU starts");
         let found: Vec<u64> = passed(board, &output)
             .into_iter()
@@ -65,7 +58,7 @@ fn the_wire_and_the_stack_mark_are_right_on_every_core() {
 #[test]
 fn every_controller_s_driver_holds_out_against_its_peer() {
     for board in Board::ALL {
-        let elf = image(board, "controller_tests");
+        let elf = probe(board, "controller_tests", None);
         let peer = UdpSocket::bind("127.0.0.1:0").expect("a free port");
         let core = free_port();
         peer.connect(("127.0.0.1", core)).expect("an address");
