@@ -81,8 +81,6 @@ pub trait Variant: 'static {
     const SATURATES: bool = Self::TOTAL;
     /// Whether every input of the operation has a defined result, also outside the domain.
     const TOTAL: bool = !matches!(Self::MAKER, Maker::Rival(_));
-    /// Bytes of tables it reads.
-    const TABLE_BYTES: u32 = 0;
 
     /// The input in this variant's own form.
     fn given(input: OperationInput<Self>) -> Self::Given;

@@ -67,69 +67,62 @@ pub(crate) fn dot_products(visitor: &mut impl Visitor) {
 fn quotients(visitor: &mut impl Visitor) {
     rows!(visitor, Divide:
         Published "division::restoring" |(a, b)| division::restoring(a, b);
-        Ours "division::nearest" |(a, b)| division::nearest(a, b), { const TABLE_BYTES: u32 = LINES; };
+        Ours "division::nearest" |(a, b)| division::nearest(a, b);
     );
     rows!(visitor, Reciprocal:
         Published "division::restoring" |x| division::restoring(I16F16::ONE, x);
-        Ours "division::reciprocal" |x| division::reciprocal(x), { const TABLE_BYTES: u32 = LINES; };
+        Ours "division::reciprocal" |x| division::reciprocal(x);
     );
 }
-
-/// The lines of reciprocals, and those of reciprocal roots.
-const LINES: u32 = 256;
-/// Sines and cosines at the nodes.
-const NODES: u32 = 1024;
-/// Powers of two within an octave.
-const POWERS: u32 = 128;
 
 /// Square roots and their reciprocals.
 pub(crate) fn roots(visitor: &mut impl Visitor) {
     rows!(visitor, SquareRoot:
         Published "root::restoring" |x| root::restoring(x);
-        Ours "root::of_length" |x| root::of_length(x), { const TABLE_BYTES: u32 = LINES; };
+        Ours "root::of_length" |x| root::of_length(x);
     );
     rows!(visitor, RootOfUnit:
-        Ours "root::of_fraction" |x| root::of_fraction(x), { const TABLE_BYTES: u32 = LINES; };
+        Ours "root::of_fraction" |x| root::of_fraction(x);
     );
     rows!(visitor, RootOfWide:
         Published "root::split" |x| root::split(x);
-        Ours "root::of_wide" |x| root::of_wide(x), { const TABLE_BYTES: u32 = LINES; };
+        Ours "root::of_wide" |x| root::of_wide(x);
     );
     rows!(visitor, RootOfSquare:
-        Ours "root::of_square" |x| root::of_square(x), { const TABLE_BYTES: u32 = LINES; };
+        Ours "root::of_square" |x| root::of_square(x);
     );
     rows!(visitor, RootOfInteger:
-        Ours "root::nearest" |x| root::nearest(x), { const TABLE_BYTES: u32 = LINES; };
-        Ours "root::floor" |x| root::floor(x), { const TABLE_BYTES: u32 = LINES; };
+        Ours "root::nearest" |x| root::nearest(x);
+        Ours "root::floor" |x| root::floor(x);
     );
     rows!(visitor, ReciprocalRoot:
         Published "division::restoring of root::restoring" |x| {
             division::restoring(I16F16::ONE, root::restoring(x))
         };
-        Ours "root::reciprocal_of_length" |x| root::reciprocal_of_length(x), { const TABLE_BYTES: u32 = LINES; };
+        Ours "root::reciprocal_of_length" |x| root::reciprocal_of_length(x);
     );
 }
 
 /// Functions of angles.
 pub(crate) fn angles(visitor: &mut impl Visitor) {
     rows!(visitor, Angle:
-        Ours "angle::of_vector" |(x, y)| Turn(angle::of_vector(x, y)), { const TABLE_BYTES: u32 = LINES; };
+        Ours "angle::of_vector" |(x, y)| Turn(angle::of_vector(x, y));
     );
     rows!(visitor, Sine:
         Published "angle::parabolic_sine" |Turn(turn)| angle::parabolic_sine(turn);
         Published "angle::refined_parabolic_sine" |Turn(turn)| angle::refined_parabolic_sine(turn);
-        Ours "angle::sine" |Turn(turn)| angle::sine(turn), { const TABLE_BYTES: u32 = NODES; };
+        Ours "angle::sine" |Turn(turn)| angle::sine(turn);
         Ours "angle::cos_sin, its sine" |Turn(turn)| angle::cos_sin(turn).1, I2F30;
     );
     rows!(visitor, Cosine:
         Published "angle::parabolic_sine" |Turn(turn)| angle::parabolic_sine(turn.wrapping_add(1 << 30));
-        Ours "angle::cosine" |Turn(turn)| angle::cosine(turn), { const TABLE_BYTES: u32 = NODES; };
+        Ours "angle::cosine" |Turn(turn)| angle::cosine(turn);
         Ours "angle::cos_sin, its cosine" |Turn(turn)| angle::cos_sin(turn).0, I2F30;
     );
     rows!(visitor, CosineAndSine:
         Published "angle::parabolic_sine, twice" |Turn(turn)| Published::cos_sin(turn), (I16F16, I16F16);
-        Ours "angle::linear_cos_sin" |Turn(turn)| angle::linear_cos_sin(turn), { const TABLE_BYTES: u32 = NODES; };
-        Ours "angle::quadratic_cos_sin" |Turn(turn)| angle::quadratic_cos_sin(turn), { const TABLE_BYTES: u32 = NODES; };
+        Ours "angle::linear_cos_sin" |Turn(turn)| angle::linear_cos_sin(turn);
+        Ours "angle::quadratic_cos_sin" |Turn(turn)| angle::quadratic_cos_sin(turn);
         Ours "angle::cos_sin" |Turn(turn)| angle::cos_sin(turn);
     );
 }
@@ -137,7 +130,7 @@ pub(crate) fn angles(visitor: &mut impl Visitor) {
 /// Lengths, and vectors of unit length.
 pub(crate) fn directions(visitor: &mut impl Visitor) {
     rows!(visitor, Length:
-        Ours "unit::length" |v| unit::length(v), { const TABLE_BYTES: u32 = LINES; };
+        Ours "unit::length" |v| unit::length(v);
     );
     rows!(visitor, NormaliseLengths:
         Published "division::restoring by root::split" |v| Published::normalised(v, v), [I16F16; 3], {
@@ -146,7 +139,7 @@ pub(crate) fn directions(visitor: &mut impl Visitor) {
                 has_published_length(v)
             }
         };
-        Ours "unit::of_vector" |v| unit::of_vector(v), { const TABLE_BYTES: u32 = LINES; };
+        Ours "unit::of_vector" |v| unit::of_vector(v);
     );
     converted_rows!(visitor, Normalise:
         Published "division::restoring by root::split" |v| v.map(narrow) => [I16F16; 3],
@@ -158,7 +151,7 @@ pub(crate) fn directions(visitor: &mut impl Visitor) {
         };
     );
     rows!(visitor, Normalise:
-        Ours "unit::normalised" |v| unit::normalised(v), { const TABLE_BYTES: u32 = LINES; };
+        Ours "unit::normalised" |v| unit::normalised(v);
     );
     converted_rows!(visitor, Renormalise:
         Published "division::restoring by root::split" |Direction(v)| v.map(narrow) => [I16F16; 3],
@@ -171,7 +164,7 @@ pub(crate) fn directions(visitor: &mut impl Visitor) {
 
 fn exponentials(visitor: &mut impl Visitor) {
     rows!(visitor, Exponential:
-        Ours "exponential::natural" |Exponent(x)| exponential::natural(x), { const TABLE_BYTES: u32 = POWERS; };
+        Ours "exponential::natural" |Exponent(x)| exponential::natural(x);
     );
 }
 
@@ -179,12 +172,10 @@ fn exponentials(visitor: &mut impl Visitor) {
 pub(crate) fn warps(visitor: &mut impl Visitor) {
     rows!(visitor, Tent:
         Published "tracer::numbers::Published::tent" |Fraction(fraction)| Published::tent(fraction), I16F16;
-        Ours "warp::tent" |Fraction(fraction)| warp::tent(fraction), { const TABLE_BYTES: u32 = LINES; };
+        Ours "warp::tent" |Fraction(fraction)| warp::tent(fraction);
     );
     rows!(visitor, Sphere:
-        Ours "warp::sphere" |(Fraction(height), Turn(turn))| warp::sphere(height, turn), {
-            const TABLE_BYTES: u32 = LINES;
-        };
+        Ours "warp::sphere" |(Fraction(height), Turn(turn))| warp::sphere(height, turn);
     );
     converted_rows!(visitor, DiffuseDirection:
         Published "tracer::material::Basis" |(Direction(normal), square, turn)| {
@@ -199,7 +190,7 @@ pub(crate) fn warps(visitor: &mut impl Visitor) {
     rows!(visitor, DiffuseDirection:
         Ours "warp::cosine_hemisphere" |(Direction(normal), Fraction(height), Turn(turn))| {
             warp::cosine_hemisphere(normal, height, turn)
-        }, { const TABLE_BYTES: u32 = LINES; };
+        };
     );
 }
 

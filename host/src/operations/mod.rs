@@ -43,8 +43,6 @@ pub struct Entry {
     pub format: Format,
     /// The inputs that errors are for.
     pub domain: String,
-    /// Bytes of tables it reads.
-    pub table_bytes: u32,
     /// The hash of what it answers to so many inputs.
     pub transcript: fn(u32) -> u64,
     /// The error in ulp for the input of these words, if that is in the domain.
@@ -78,7 +76,6 @@ impl Visitor for List {
             maker: V::MAKER,
             format: V::Operation::FORMAT,
             domain: format!("{}{fitting}", V::DOMAIN),
-            table_bytes: V::TABLE_BYTES,
             transcript: transcript::transcript::<V>,
             error_at: verify::error_at::<V>,
             can_be_exhausted: verify::can_be_exhausted::<V>(),
@@ -113,8 +110,8 @@ pub struct Row {
     pub domain: String,
     /// `exhaustive` where every input was tried, else `sampled`.
     pub verified: &'static str,
-    /// Bytes of tables it reads.
-    pub table_bytes: u32,
+    /// Bytes of tables it reads. For other crates' functions that is not known: their tables may have no name in the image.
+    pub table_bytes: Option<u64>,
     /// Bytes of the function and of all that it calls.
     pub code_bytes: u64,
     /// The words of an input with the largest error.
@@ -197,7 +194,8 @@ fn row(measurement: &Measurement, errors: Option<&Proof>, is_proof: bool) -> Row
         ulp: format!("2^-{}", entry.format.fraction_bits),
         domain: entry.domain.clone(),
         verified: if is_proof { "exhaustive" } else { "sampled" },
-        table_bytes: entry.table_bytes,
+        table_bytes: (!matches!(entry.maker, Maker::Rival(_)))
+            .then(|| measurement.reach.tables.values().sum()),
         code_bytes: measurement.reach.bytes,
         worst_input: errors
             .map(|errors| errors.worst_input.clone())

@@ -23,7 +23,7 @@ pub fn table(rows: &[Row]) -> String {
                 row.instructions,
                 row.called_instructions,
                 row.code_bytes,
-                row.table_bytes,
+                row.table_bytes.map_or("-".to_owned(), |bytes| bytes.to_string()),
                 figure(row.max_error_ulp),
                 figure(row.mean_error_ulp),
                 coverage(row),

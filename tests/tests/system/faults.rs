@@ -1,6 +1,7 @@
 //! Cores that fail: it is said where in the source, and the fleet goes on.
 
 use std::net::Ipv4Addr;
+use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
 use clap::Parser;
@@ -16,6 +17,13 @@ use tracer::profile::Precise;
 use whole_system::{cornell, film, plan, probe, qemu, repository};
 use wire::LastWords;
 
+/// One of the boards' probes, and what it says until its end.
+fn ended(board: Board, name: &str) -> (PathBuf, String) {
+    let elf = probe(board, name, None);
+    let output = run_to_end(&qemu(), board, &elf).unwrap();
+    (elf, String::from_utf8_lossy(&output.stdout).into_owned())
+}
+
 /// The address that a core's last words name.
 fn address(words: &str) -> u32 {
     let (_, after) = words.split_once(" at 0x").unwrap_or_else(|| panic!("{words}"));
@@ -25,9 +33,7 @@ fn address(words: &str) -> u32 {
 #[test]
 fn the_address_of_a_fault_is_one_of_the_probe_s_own_lines() {
     for board in Board::ALL {
-        let elf = probe(board, "exception_probe", None);
-        let output = run_to_end(&qemu(), board, &elf).unwrap();
-        let said = String::from_utf8_lossy(&output.stdout).into_owned();
+        let (elf, said) = ended(board, "exception_probe");
         let place = Place::of(&elf, address(&said)).unwrap();
         println!("{board}: {} is {place}", said.trim());
         assert!(
@@ -47,9 +53,7 @@ fn the_address_of_a_fault_is_one_of_the_probe_s_own_lines() {
 #[test]
 fn a_panic_is_traced_to_its_function_by_the_line_it_names() {
     for board in Board::ALL {
-        let elf = probe(board, "panic_probe", None);
-        let output = run_to_end(&qemu(), board, &elf).unwrap();
-        let said = String::from_utf8_lossy(&output.stdout).into_owned();
+        let (elf, said) = ended(board, "panic_probe");
         let words = LastWords {
             address: None,
             words: said.trim(),
