@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
-use tracer::unit::Termination;
+use tracer::unit::{Plan, Termination};
 use wire::Name;
 
 use crate::board::Board;
@@ -29,7 +29,7 @@ use crate::memory;
 use crate::openexr::{self, ReadError};
 use crate::picture::Estimate;
 use crate::report::{self, Report};
-use crate::scene::{CompiledScene, Scene, SceneError, compile};
+use crate::scene::{CompiledScene, Scene, SceneError, compile, samples_per_unit};
 use crate::session::{Route, Session};
 use crate::setup::{self, Install, SetupError, Toolchain, Tools, Wanted};
 use options::{Backend, PictureOptions, Reference, RenderOptions};
@@ -126,6 +126,7 @@ pub struct Job {
     options: PictureOptions,
     scene: Scene,
     compiled: CompiledScene,
+    plan: Plan,
     reference: Option<Estimate>,
     out: PathBuf,
 }
@@ -165,7 +166,8 @@ impl Job {
         let scene = Scene::load(&options.scene)?;
         let (width, height) = (options.size.width, options.size.height);
         scene.check_frame(width, height)?;
-        options.plan().units().ok_or(JobError::TooManyUnits)?;
+        let plan = options.plan(samples_per_unit(&scene, options.spp, options.termination.0));
+        plan.units().ok_or(JobError::TooManyUnits)?;
         let out = options.out(&scene.name);
         check_writable(&out)?;
         let reference = match &options.reference {
@@ -177,6 +179,7 @@ impl Job {
             options: options.clone(),
             scene,
             compiled,
+            plan,
             reference,
             out,
         })
@@ -195,7 +198,7 @@ impl Job {
             scene: self.compiled.blob.clone(),
             scene_id: self.compiled.id,
             epoch: 0,
-            plan: self.options.plan(),
+            plan: self.plan,
             order: self.options.pixels.into(),
             profile: Name::new(self.options.profile.name()),
         }

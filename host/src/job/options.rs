@@ -12,8 +12,6 @@ use crate::arithmetic::Arithmetic;
 use crate::board::Board;
 use crate::log::Level;
 
-/// Samples per pixel in one unit, unless the whole picture has fewer.
-const SAMPLES_PER_UNIT: u32 = 64;
 /// A film of this many pixels takes half a gigabyte.
 const MOST_PIXELS: u32 = 1 << 24;
 
@@ -88,13 +86,13 @@ pub struct RenderOptions {
 }
 
 impl PictureOptions {
-    /// The plan that all cores share.
-    pub fn plan(&self) -> Plan {
+    /// The plan that all cores share, with units of so many samples per pixel.
+    pub fn plan(&self, samples_per_unit: u16) -> Plan {
         Plan {
             width: self.size.width,
             height: self.size.height,
             spp: self.spp,
-            samples_per_unit: self.spp.min(SAMPLES_PER_UNIT) as u16,
+            samples_per_unit,
             seed: self.seed,
             termination: self.termination.0,
             epsilon: self.epsilon.map_or(self.profile.epsilon(), |epsilon| epsilon.0),
@@ -285,7 +283,7 @@ mod tests {
             (4, Arithmetic::Precise, Pixels::Leased)
         );
         assert_eq!(picture.out("cornell"), PathBuf::from("out/cornell-precise"));
-        let plan = picture.plan();
+        let plan = picture.plan(64);
         assert_eq!(
             (plan.width, plan.height, plan.spp, plan.samples_per_unit),
             (256, 192, 64, 64)
@@ -329,19 +327,11 @@ mod tests {
             "--no-install",
         ])
         .expect("these are all good");
-        let plan = options.picture.plan();
+        let plan = options.picture.plan(32);
         assert_eq!(options.boards, Board::ALL);
-        assert_eq!((plan.spp, plan.samples_per_unit, plan.epsilon), (1024, 64, 6554));
+        assert_eq!((plan.spp, plan.samples_per_unit, plan.epsilon), (1024, 32, 6554));
         assert_eq!((plan.termination, plan.seed), (Termination::Depth(7), u64::MAX));
         assert_eq!(options.picture.reference, Some(Reference::None));
-        assert_eq!(
-            parse(&["--spp", "8"])
-                .expect("good")
-                .picture
-                .plan()
-                .samples_per_unit,
-            8
-        );
     }
 
     #[test]

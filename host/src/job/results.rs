@@ -101,12 +101,12 @@ impl Results<'_> {
         if options.pixels == Pixels::Stochastic {
             return None;
         }
-        let (blob, plan) = (&self.job.compiled.blob, options.plan());
+        let (blob, plan) = (&self.job.compiled.blob, &self.job.plan);
         let bar = bar("lockstep", self.collection.film.samples());
         let done = |samples| bar.inc(samples);
         let rendered = match options.profile {
-            Arithmetic::Paper => lockstep::render::<Paper>(blob, &plan, done),
-            Arithmetic::Precise => lockstep::render::<Precise>(blob, &plan, done),
+            Arithmetic::Paper => lockstep::render::<Paper>(blob, plan, done),
+            Arithmetic::Precise => lockstep::render::<Precise>(blob, plan, done),
         };
         bar.finish_and_clear();
         Some(rendered.expect("the compiler in this very program wrote the blob"))
@@ -147,7 +147,7 @@ impl Results<'_> {
 
     fn report(&self, image: &Estimate, verdict: Option<&Verdict>) -> Report {
         let options = &self.job.options;
-        let plan = options.plan();
+        let plan = self.job.plan;
         let error = match verdict.and_then(|verdict| verdict.against.as_ref()) {
             Some((reference, comparison)) => {
                 let noise_known = image.variance.is_some() && reference.variance.is_some();

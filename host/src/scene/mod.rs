@@ -7,11 +7,13 @@
 mod compile;
 mod limits;
 mod parse;
+mod unit_size;
 mod validate;
 
 use std::path::{Path, PathBuf};
 
 pub use compile::{CompiledScene, SceneNeeds, compile};
+pub use unit_size::samples_per_unit;
 
 /// A checked scene.
 #[derive(Clone, Debug, PartialEq)]
