@@ -53,6 +53,15 @@ fn small_reference() -> &'static Estimate {
     REFERENCE.get_or_init(|| reference(64, 48, 4096))
 }
 
+/// What a wide picture shows, tracer and reference work out each for itself.
+#[test]
+fn a_wide_picture_is_the_reference_s() {
+    let (precise, _) = estimate::<Precise>(&cornell(), &plan::<Precise>(64, 36, 256));
+    let found = compare(&precise, &reference(64, 36, 1024)).unwrap();
+    show("precise, 16:9", &found);
+    assert_eq!(found.tiles.failed().count(), 0);
+}
+
 /// 50 million samples on either side: the two means' noise is 0.07 % together, a third of the bound.
 #[test]
 fn precise_is_as_bright_as_double_precision() {

@@ -101,11 +101,11 @@ pub(super) struct View {
 
 impl View {
     pub(super) fn new(camera: &Camera, width: u16, height: u16) -> Self {
+        let plane_height = camera.height_for(width, height);
         let (width, height) = (f64::from(width), f64::from(height));
         let direction = Vector::of(camera.direction);
-        let across =
-            direction.cross(Vector::of(camera.up)).normalised() * (camera.plane_height * width / height);
-        let upwards = across.cross(direction).normalised() * camera.plane_height;
+        let across = direction.cross(Vector::of(camera.up)).normalised() * (plane_height * width / height);
+        let upwards = across.cross(direction).normalised() * plane_height;
         Self {
             position: Vector::of(camera.position),
             direction,

@@ -77,8 +77,9 @@ pub fn compile(scene: &Scene, width: u16, height: u16) -> CompiledScene {
 fn camera(camera: &Camera, width: u16, height: u16) -> CameraRecord {
     let aspect = f64::from(width) / f64::from(height);
     let right = normalised(cross(camera.direction, camera.up));
-    let up = cross(right, camera.direction).map(|c| c * camera.plane_height);
-    let right = right.map(|c| c * camera.plane_height * aspect);
+    let plane_height = camera.height_for(width, height);
+    let up = cross(right, camera.direction).map(|c| c * plane_height);
+    let right = right.map(|c| c * plane_height * aspect);
     let scale = film_scale(camera.direction, right, up, width, height);
     let q30 = |v: [f64; 3]| v.map(|c| (c * scale * f64::from(1 << 30)).round() as i32);
     let axis = |pixels: u16| {

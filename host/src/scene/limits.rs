@@ -67,6 +67,12 @@ pub(super) const PLANE_HEIGHT: Limits = Limits {
     above: "the view would be wider than 165 degrees: use e.g. 0.5135",
     example: "e.g. `plane_height = 0.5135` (the image plane's height at distance 1)",
 };
+pub(super) const PLANE_WIDTH: Limits = Limits {
+    range: 1.0 / 256.0..=16.0,
+    below: "the view would be narrower than 16:16 resolves",
+    above: "the view would be wider than 165 degrees: use e.g. 0.72, or leave it out",
+    example: "e.g. `plane_width = 0.72` (the most that the image plane is wide at distance 1)",
+};
 pub(super) const NEAR: Limits = Limits {
     range: 0.0..=MAX_LENGTH,
     below: "rays cannot start behind the camera: use 0",

@@ -35,10 +35,21 @@ pub struct Camera {
     pub direction: [f64; 3],
     /// A unit vector that points up in the picture; never parallel to `direction`, not always perpendicular to it.
     pub up: [f64; 3],
-    /// Height of the image plane at distance 1 from the pinhole.
+    /// Height of the image plane at distance 1 from the pinhole, unless `plane_width` makes it lower.
     pub plane_height: f64,
+    /// The most that the image plane is wide; any width without it.
+    pub plane_width: Option<f64>,
     /// How far along its unit direction a ray starts; what lies nearer to the pinhole is not seen.
     pub near: f64,
+}
+
+impl Camera {
+    /// Height of the image plane for a picture of `width` by `height` pixels; it is as wide as the picture's shape says.
+    pub fn height_for(&self, width: u16, height: u16) -> f64 {
+        let aspect = f64::from(width) / f64::from(height);
+        let widest = self.plane_width.unwrap_or(f64::INFINITY);
+        self.plane_height.min(widest / aspect)
+    }
 }
 
 /// A sphere and what it is made of.
@@ -177,13 +188,13 @@ impl Scene {
             validate::Blocked::Inside(sphere, ()) => {
                 let name = &sphere.name;
                 format!(
-                    "the {place} ray starts inside the solid of sphere \"{name}\"; choose a shape nearer to 4:3"
+                    "the {place} ray starts inside the solid of sphere \"{name}\"; choose a shape nearer to 4:3, or give the camera a `plane_width`"
                 )
             }
             validate::Blocked::TooFar(sphere, ()) => {
                 let name = &sphere.name;
                 format!(
-                    "the {place} ray starts beyond the tracer's reach of sphere \"{name}\"; choose a narrower shape"
+                    "the {place} ray starts beyond the tracer's reach of sphere \"{name}\"; choose a narrower shape, or give the camera a `plane_width`"
                 )
             }
         };

@@ -6,7 +6,9 @@
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::limits::{COORDINATE, EMISSION, INDEX, Limits, NEAR, PLANE_HEIGHT, RADIUS, REFLECTANCE};
+use super::limits::{
+    COORDINATE, EMISSION, INDEX, Limits, NEAR, PLANE_HEIGHT, PLANE_WIDTH, RADIUS, REFLECTANCE,
+};
 use super::{Camera, FORMAT, Fault, MAX_SPHERES, Material, Sphere};
 
 /// A scene with the places of its parts in the text.
@@ -145,7 +147,14 @@ impl<'t, 'a> Table<'t, '_, 'a> {
             entries,
             source: &mut *self.source,
         };
-        table.refuse_unknown(&["position", "direction", "up", "plane_height", "near"]);
+        table.refuse_unknown(&[
+            "position",
+            "direction",
+            "up",
+            "plane_height",
+            "plane_width",
+            "near",
+        ]);
         let position = table.point("position");
         let direction = table.direction("direction");
         let up = if entries.contains_key("up") {
@@ -154,6 +163,11 @@ impl<'t, 'a> Table<'t, '_, 'a> {
             Some([0.0, 1.0, 0.0])
         };
         let plane_height = table.number("plane_height", &PLANE_HEIGHT);
+        let plane_width = if entries.contains_key("plane_width") {
+            table.number("plane_width", &PLANE_WIDTH).map(Some)
+        } else {
+            Some(None)
+        };
         let near = if entries.contains_key("near") {
             table.number("near", &NEAR)
         } else {
@@ -164,6 +178,7 @@ impl<'t, 'a> Table<'t, '_, 'a> {
             direction: direction?,
             up: up?,
             plane_height: plane_height?,
+            plane_width: plane_width?,
             near: near?,
         };
         Some((camera, at))

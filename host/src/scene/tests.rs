@@ -239,6 +239,16 @@ fn numbers_out_of_their_own_range() {
     spoiled(11, "mirror = [0.5, -0.1, 0.5]", &["below 0"]);
     spoiled(5, "plane_height = 0", &["narrower"]);
     spoiled(5, "plane_height = 17", &["165 degrees"]);
+    spoiled(
+        5,
+        "plane_width = 0\nplane_height = 1",
+        &["plane_width", "narrower"],
+    );
+    spoiled(
+        5,
+        "plane_width = 17\nplane_height = 1",
+        &["plane_width", "165 degrees"],
+    );
     found_at(
         6,
         &GOOD.replace(
@@ -366,9 +376,16 @@ fn cameras_inside_solids() {
     assert!(outside[0].contains("sphere \"front\""), "{outside:?}");
 }
 
+/// The Cornell box as it was before cameras had a `plane_width`.
+fn cornell_of_any_width() -> Scene {
+    let mut scene = Scene::parse("cornell.toml", CORNELL).unwrap();
+    scene.camera.plane_width = None;
+    scene
+}
+
 #[test]
 fn wider_pictures_than_the_scene_allows() {
-    let scene = Scene::parse("cornell.toml", CORNELL).unwrap();
+    let scene = cornell_of_any_width();
     for (width, height) in [
         (256, 192),
         (64, 48),
@@ -381,10 +398,37 @@ fn wider_pictures_than_the_scene_allows() {
         scene.check_frame(width, height).unwrap();
     }
     let message = scene.check_frame(1920, 800).unwrap_err().to_string();
-    assert!(
-        message.contains("1920x800") && message.contains("ray starts inside the solid"),
-        "{message}"
-    );
+    for said in ["1920x800", "ray starts inside the solid", "`plane_width`"] {
+        assert!(message.contains(said), "{message}");
+    }
+}
+
+#[test]
+fn a_plane_width_lets_the_cornell_box_have_any_shape_and_leaves_its_own_as_it_was() {
+    let scene = Scene::parse("cornell.toml", CORNELL).unwrap();
+    for (width, height) in [
+        (1920, 1080),
+        (16, 9),
+        (64, 36),
+        (2560, 1080),
+        (4000, 2),
+        (1080, 1920),
+    ] {
+        scene.check_frame(width, height).unwrap();
+        let plane_height = scene.camera.height_for(width, height);
+        let plane_width = plane_height * f64::from(width) / f64::from(height);
+        assert!(
+            plane_height <= 0.5135 && plane_width < 0.72 + 1e-12,
+            "{width}x{height}"
+        );
+    }
+    for (width, height) in [(256, 192), (64, 48), (512, 512), (7, 5), (3, 4)] {
+        assert_eq!(
+            compile(&scene, width, height),
+            compile(&cornell_of_any_width(), width, height),
+            "{width}x{height}"
+        );
+    }
 }
 
 #[test]

@@ -156,7 +156,8 @@ fn start_points(camera: &Camera, width: u16, height: u16) -> [(&'static str, [f6
     let aspect = f64::from(width) / f64::from(height);
     let right = normalised(cross(camera.direction, camera.up));
     let up = cross(right, camera.direction);
-    let (half_width, half_height) = (camera.plane_height * aspect / 2.0, camera.plane_height / 2.0);
+    let plane_height = camera.height_for(width, height);
+    let (half_width, half_height) = (plane_height * aspect / 2.0, plane_height / 2.0);
     [
         ("middle", 0.0, 0.0),
         ("top", 0.0, 1.0),
