@@ -85,6 +85,19 @@ pub fn qemu() -> PathBuf {
     tools.qemu.expect("set-up gives what is wanted")
 }
 
+/// The linker of a machine without rustup, which must be there.
+///
+/// # Panics
+/// If it is missing.
+pub fn system_linker() -> PathBuf {
+    let wanted = Wanted {
+        system_linker: true,
+        ..Wanted::default()
+    };
+    let tools = setup::ensure(wanted, Install::Forbidden).unwrap_or_else(|error| panic!("{error}"));
+    tools.system_linker.expect("set-up gives what is wanted")
+}
+
 /// One of the boards' probes, built, with a log if it shall have one.
 ///
 /// # Panics

@@ -31,6 +31,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
         lints: true,
         gdb: true,
         tshark: true,
+        system_linker: true,
         ..Wanted::default()
     };
     let tools = step("set-up", || {

@@ -20,6 +20,8 @@ pub struct Wanted {
     pub gdb: bool,
     /// Wireshark's own decoder of packets.
     pub tshark: bool,
+    /// The linker of a machine without rustup.
+    pub system_linker: bool,
 }
 
 /// A Rust compiler found on the machine, recent enough for this workspace.
@@ -74,6 +76,8 @@ pub struct Facts {
     pub compilers: Vec<Compiler>,
     /// `rust-lld` or `ld.lld`.
     pub linker: Option<PathBuf>,
+    /// `ld.lld`.
+    pub system_linker: Option<PathBuf>,
     /// `cargo fmt` works with the cargo in use.
     pub rustfmt: bool,
     /// `cargo clippy` works with the cargo in use.
@@ -93,6 +97,8 @@ pub struct Tools {
     pub dieharder: Option<PathBuf>,
     /// The debugger, where it was wanted.
     pub gdb: Option<PathBuf>,
+    /// The linker of a machine without rustup, where it was wanted.
+    pub system_linker: Option<PathBuf>,
     /// What builds the firmware, where it was wanted.
     pub firmware: Option<Toolchain>,
 }
@@ -172,6 +178,7 @@ const GDB: &str = "a debugger for Arm (gdb-multiarch)";
 const TSHARK: &str = "Wireshark without its windows (tshark)";
 const SOURCE: &str = "a Rust compiler with the source of its library (rust-src)";
 const LINKER: &str = "a linker for the boards (rust-lld or ld.lld)";
+const SYSTEM_LINKER: &str = "the linker of machines without rustup (ld.lld)";
 const RUSTFMT: &str = "cargo fmt";
 const CLIPPY: &str = "cargo clippy";
 const FIRMWARE_CLIPPY: &str = "clippy for the compiler of the boards";
@@ -183,7 +190,7 @@ struct Gap {
     packages: &'static [&'static str],
 }
 
-const GAPS: [Gap; 9] = [
+const GAPS: [Gap; 10] = [
     Gap {
         name: QEMU,
         component: None,
@@ -215,6 +222,11 @@ const GAPS: [Gap; 9] = [
         packages: &["lld"],
     },
     Gap {
+        name: SYSTEM_LINKER,
+        component: None,
+        packages: &["lld"],
+    },
+    Gap {
         name: RUSTFMT,
         component: Some("rustfmt"),
         packages: &["rustfmt-web"],
@@ -234,13 +246,15 @@ const GAPS: [Gap; 9] = [
 /// Says what must be installed on a machine with these `facts` for a command that wants `wanted`.
 pub fn decide(facts: &Facts, wanted: Wanted) -> Plan {
     let with_source = facts.compilers.iter().find(|compiler| compiler.has_source);
+    let lacks_linker = wanted.firmware && facts.linker.is_none();
     let lacks = |name| match name {
         QEMU => wanted.qemu && facts.qemu.is_none(),
         DIEHARDER => wanted.dieharder && facts.dieharder.is_none(),
         GDB => wanted.gdb && facts.gdb.is_none(),
         TSHARK => wanted.tshark && facts.tshark.is_none(),
         SOURCE => wanted.firmware && with_source.is_none(),
-        LINKER => wanted.firmware && facts.linker.is_none(),
+        LINKER => lacks_linker,
+        SYSTEM_LINKER => wanted.system_linker && facts.system_linker.is_none() && !lacks_linker,
         RUSTFMT => wanted.lints && !facts.rustfmt,
         CLIPPY => wanted.lints && !facts.clippy,
         _ => wanted.lints && wanted.firmware && lacks_second_clippy(facts),
@@ -260,6 +274,7 @@ pub fn decide(facts: &Facts, wanted: Wanted) -> Plan {
         qemu: facts.qemu.clone().filter(|_| wanted.qemu),
         dieharder: facts.dieharder.clone().filter(|_| wanted.dieharder),
         gdb: facts.gdb.clone().filter(|_| wanted.gdb),
+        system_linker: facts.system_linker.clone().filter(|_| wanted.system_linker),
         firmware,
     })
 }

@@ -9,6 +9,7 @@ const ALL: Wanted = Wanted {
     dieharder: false,
     gdb: false,
     tshark: false,
+    system_linker: false,
 };
 
 fn compiler(at: &str, has_source: bool) -> Compiler {
@@ -29,6 +30,7 @@ fn fresh() -> Facts {
         tshark: None,
         compilers: vec![compiler("/rustup", false)],
         linker: Some("/rustup/rust-lld".into()),
+        system_linker: None,
         rustfmt: true,
         clippy: true,
         rustup: Rustup::Present,
@@ -102,6 +104,7 @@ fn only_what_is_wanted_is_installed() {
         Plan::Ready(Tools {
             qemu: None,
             dieharder: None,
+            system_linker: None,
             gdb: None,
             firmware: None
         })

@@ -23,6 +23,7 @@ pub fn survey() -> Facts {
     if !in_use_has_source && !sysroots.contains(&debian) && has_source(&debian) && is_recent(&debian) {
         sysroots.push(debian);
     }
+    let system_linker = program("ld.lld");
     Facts {
         qemu: program("qemu-system-arm"),
         dieharder: program("dieharder"),
@@ -31,7 +32,8 @@ pub fn survey() -> Facts {
         linker: sysroots
             .iter()
             .find_map(|sysroot| bundled_linker(sysroot))
-            .or_else(|| program("ld.lld")),
+            .or_else(|| system_linker.clone()),
+        system_linker,
         rustfmt: in_use
             .as_deref()
             .is_some_and(|sysroot| sysroot.join("bin/cargo-fmt").is_file()),

@@ -1,5 +1,7 @@
 //! Firmware images: what must not link does not, what goes wrong on a core is said, and every image fits.
 
+use std::fs;
+use std::path::{Path, PathBuf};
 use std::process::Output;
 
 use host::arithmetic::Arithmetic;
@@ -7,7 +9,7 @@ use host::board::{Board, DTCM_BUDGET, ITCM_BUDGET};
 use host::firmware::{self, Recipe, build};
 use host::fleet::run_to_end;
 use host::scene::SceneNeeds;
-use whole_system::{qemu, toolchain};
+use whole_system::{qemu, said, system_linker, toolchain};
 
 const ALL: SceneNeeds = SceneNeeds {
     diffuse: true,
@@ -25,10 +27,19 @@ fn recipe(profile: Arithmetic, needs: SceneNeeds) -> Recipe {
 }
 
 /// Builds one of a board's examples, and says where its ELF is.
-fn example(board: Board, name: &str) -> (Output, std::path::PathBuf) {
+fn example(board: Board, name: &str) -> (Output, PathBuf) {
     let mut command = firmware::cargo(&toolchain(), board, "build", &recipe(Arithmetic::Precise, ALL));
     let output = command.args(["--example", name]).output().unwrap();
     (output, firmware::example(board, name))
+}
+
+/// As [`example`], but linked by the linker of a machine without rustup, which may be years older than the compiler.
+fn linked_by_the_system(board: Board, name: &str) -> (Output, PathBuf) {
+    // All but the last crate are compiled already.
+    let mut command = firmware::cargo(&toolchain(), board, "rustc", &recipe(Arithmetic::Precise, ALL));
+    command.args(["--example", name, "--", "-Clinker-flavor=gnu-lld"]);
+    command.arg(format!("-Clinker={}", system_linker().display()));
+    (command.output().unwrap(), firmware::example(board, name))
 }
 
 fn refused(board: Board, name: &str) -> String {
@@ -40,16 +51,13 @@ fn refused(board: Board, name: &str) -> String {
 /// Runs an example on a core: its exit code and what it said.
 fn run(board: Board, name: &str) -> (Option<i32>, String) {
     let (output, elf) = example(board, name);
-    assert!(
-        output.status.success(),
-        "{}",
-        String::from_utf8_lossy(&output.stderr)
-    );
-    let output = run_to_end(&qemu(), board, &elf).unwrap();
-    let said = [output.stdout, output.stderr]
-        .map(|bytes| String::from_utf8_lossy(&bytes).into_owned())
-        .concat();
-    (output.status.code(), format!("{board}: {said}"))
+    assert!(output.status.success(), "{}", said(&output));
+    run_image(board, &elf)
+}
+
+fn run_image(board: Board, elf: &Path) -> (Option<i32>, String) {
+    let output = run_to_end(&qemu(), board, elf).unwrap();
+    (output.status.code(), format!("{board}: {}", said(&output)))
 }
 
 #[test]
@@ -79,6 +87,34 @@ fn the_core_s_clock_counts_instructions() {
     for board in Board::ALL {
         let (code, said) = run(board, "clock_probe");
         assert_eq!(code, Some(0), "{said}");
+    }
+}
+
+#[test]
+fn the_system_s_own_linker_links_what_fits_and_names_the_one_cause_why_something_does_not() {
+    for board in Board::ALL {
+        let (output, elf) = linked_by_the_system(board, "clock_probe");
+        assert!(output.status.success(), "{}", said(&output));
+        let (code, text) = run_image(board, &elf);
+        assert_eq!(code, Some(0), "{text}");
+
+        let (output, _) = linked_by_the_system(board, "data_probe");
+        let text = said(&output);
+        assert!(!output.status.success(), "{text}");
+        assert!(text.contains("data and stacks do not fit"), "{text}");
+        assert!(!text.contains("floating point"), "{text}");
+
+        // Not every linker knows which routines are left in the image; the host finds them there.
+        let (output, elf) = linked_by_the_system(board, "float_probe");
+        let found = match output.status.success() {
+            true => {
+                firmware::measure(board, &fs::read(elf).unwrap())
+                    .unwrap()
+                    .float_symbols
+            }
+            false => vec![said(&output)],
+        };
+        assert!(found.iter().any(|text| text.contains("mul")), "{found:?}");
     }
 }
 
