@@ -159,6 +159,8 @@ pub struct TileTest {
 pub struct LockstepError {
     /// As in [`Error::bias`].
     pub bias: Option<f64>,
+    /// Upper bound of the standard error of `bias`: paths that rounding sends another way are noise.
+    pub bias_standard_error: Option<f64>,
     /// Root of the mean squared difference; with the same random numbers there is little noise to correct for.
     pub rmse: f64,
     /// The largest difference of any channel of any pixel.
@@ -222,6 +224,7 @@ impl LockstepError {
         let comparison = compare(&exact(picture), &exact(lockstep))?;
         Ok(Self {
             bias: comparison.bias,
+            bias_standard_error: comparison.bias_spread,
             rmse: comparison.rmse,
             max_abs: comparison.max_abs,
         })
@@ -366,6 +369,8 @@ mod tests {
         assert!((error.max_abs - 0.3).abs() < 1e-12);
         assert!((error.rmse - (0.09f64 / 6.0).sqrt()).abs() < 1e-12);
         assert!((error.bias.unwrap() - 0.3 / 4.5).abs() < 1e-12);
+        // The pixels' sums differ by 0 and 0.3: a mean of 0.15 with a standard error of 0.15, of 2.25.
+        assert!((error.bias_standard_error.unwrap() - 0.15 / 2.25).abs() < 1e-12);
     }
 
     #[test]

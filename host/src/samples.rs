@@ -56,8 +56,12 @@ pub struct Row {
     pub rays_per_sample: Option<f64>,
     /// (mean - reference mean) / reference mean, noise and all.
     pub bias: Option<f64>,
+    /// Upper bound of the standard error of `bias`.
+    pub bias_standard_error: Option<f64>,
     /// The same against the same paths in double precision: of arithmetic alone.
     pub lockstep_bias: Option<f64>,
+    /// Upper bound of the standard error of `lockstep_bias`.
+    pub lockstep_bias_standard_error: Option<f64>,
     /// Noise-corrected root of the mean squared error; 0 where noise hides it.
     pub rmse: Option<f64>,
     /// The largest `rmse` that the noise leaves room for: two standard errors up.
@@ -139,6 +143,7 @@ impl Series {
 
 impl Row {
     fn new(board: Board, report: &Report) -> Self {
+        let lockstep = report.lockstep_error;
         Self {
             board,
             profile: report.profile.clone(),
@@ -149,7 +154,9 @@ impl Row {
             cycles_per_sample: report.cost.cycles_per_sample,
             rays_per_sample: report.cost.rays_per_sample,
             bias: report.error.bias,
-            lockstep_bias: report.lockstep_error.and_then(|lockstep| lockstep.bias),
+            bias_standard_error: report.error.bias_standard_error,
+            lockstep_bias: lockstep.and_then(|lockstep| lockstep.bias),
+            lockstep_bias_standard_error: lockstep.and_then(|lockstep| lockstep.bias_standard_error),
             rmse: report.error.rmse,
             rmse_at_most: report.error.rmse_at_most,
             image_sha256: report.image_sha256.clone(),
@@ -157,27 +164,30 @@ impl Row {
     }
 }
 
-/// The list for people, boards side by side.
+/// The list for people, boards side by side, what is behind a `±` being one standard error at most.
 pub fn table(rows: &[Row]) -> String {
     let mut lines = vec![format!(
-        "{:8} {:10} {:12} {:>8} {:>15} {:>8} {:>10} {:>16} {:>9}",
+        "{:8} {:10} {:12} {:>8} {:>15} {:>8} {:>18} {:>18} {:>9}",
         "profile", "paths", "board", "code", "instructions", "rays", "bias", "arithmetic bias", "rmse <="
     )];
-    let percent =
-        |share: Option<f64>| share.map_or("-".to_owned(), |share| format!("{:+.3} %", 100.0 * share));
+    let percent = |share: Option<f64>, error: Option<f64>| match (share, error) {
+        (Some(share), Some(error)) => format!("{:+.3} ± {:.3} %", 100.0 * share, 100.0 * error),
+        (Some(share), None) => format!("{:+.3} %", 100.0 * share),
+        (None, _) => "-".to_owned(),
+    };
     let figure =
         |value: Option<f64>, digits| value.map_or("-".to_owned(), |value| format!("{value:.digits$}"));
     lines.extend(rows.iter().map(|row| {
         format!(
-            "{:8} {:10} {:12} {:>8} {:>15} {:>8} {:>10} {:>16} {:>9}",
+            "{:8} {:10} {:12} {:>8} {:>15} {:>8} {:>18} {:>18} {:>9}",
             row.profile,
             row.termination,
             row.board,
             row.itcm_bytes.map_or("-".to_owned(), |bytes| bytes.to_string()),
             figure(row.instructions_per_sample, 1),
             figure(row.rays_per_sample, 2),
-            percent(row.bias),
-            percent(row.lockstep_bias),
+            percent(row.bias, row.bias_standard_error),
+            percent(row.lockstep_bias, row.lockstep_bias_standard_error),
             figure(row.rmse_at_most, 5),
         )
     }));

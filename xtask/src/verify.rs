@@ -81,7 +81,7 @@ fn table(verdicts: &[Verdict]) -> String {
         Some(format!(
             "{:28} {:42} {:>12} {:>12} {:>14}",
             entry.operation,
-            entry.variant,
+            entry.name(),
             figure(Some(figures.max_error)),
             figure(Some(figures.mean_error)),
             figures.cases

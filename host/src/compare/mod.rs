@@ -27,6 +27,9 @@ pub struct Comparison {
     pub bias: Option<f64>,
     /// Upper bound of the standard error of `bias` (as if the channels' noise were one and the same).
     pub bias_standard_error: Option<f64>,
+    /// Standard error of `bias` by how much the pixels' differences differ among themselves. It needs no variance, and takes
+    /// an error that is not the same everywhere for noise as well, so it is an upper bound, too.
+    pub bias_spread: Option<f64>,
     /// Mean radiance of the picture.
     pub mean: [f64; 3],
     /// Mean radiance of the reference over the same pixels.
@@ -157,6 +160,7 @@ pub fn compare(image: &Estimate, reference: &Estimate) -> Result<Comparison, Com
     Ok(Comparison {
         bias: relative(mean.iter().sum::<f64>() - reference_level),
         bias_standard_error: relative(error).filter(|_| noisy),
+        bias_spread: relative(spread_of_sum(&present)),
         mean,
         reference_mean,
         rmse: squared_error.corrected.max(0.0).sqrt(),
@@ -189,24 +193,32 @@ fn pairs(image: &Estimate, reference: &Estimate) -> Vec<Option<Pair>> {
         .collect()
 }
 
+/// The standard error of the channels' summed mean difference.
+fn spread_of_sum(pixels: &[Pair]) -> f64 {
+    standard_error(pixels, |pair| {
+        (0..3).map(|channel| pair.difference(channel)).sum()
+    })
+}
+
+/// The standard error of the mean of `value`. The channels of a pixel share its paths, pixels share nothing: the spread is
+/// taken over pixels.
+fn standard_error(pixels: &[Pair], value: impl Fn(&Pair) -> f64) -> f64 {
+    let count = pixels.len() as f64;
+    let mean = pixels.iter().map(&value).sum::<f64>() / count;
+    let spread: f64 = pixels.iter().map(|pair| (value(pair) - mean).powi(2)).sum();
+    (spread / (count - 1.0).max(1.0) / count).sqrt()
+}
+
 fn squared_error(pixels: &[Pair]) -> SquaredError {
-    // The channels of a pixel share its paths, pixels share nothing: the spread is taken over pixels.
     let excess = |pair: &Pair| -> f64 {
         (0..3)
             .map(|c| pair.difference(c).powi(2) - pair.variance[c])
             .sum::<f64>()
             / 3.0
     };
-    let count = pixels.len() as f64;
-    let corrected = pixels.iter().map(excess).sum::<f64>() / count;
-    let spread = pixels
-        .iter()
-        .map(|pair| (excess(pair) - corrected).powi(2))
-        .sum::<f64>();
-    let standard_error = (spread / (count - 1.0).max(1.0) / count).sqrt();
     SquaredError {
-        corrected,
-        standard_error,
+        corrected: pixels.iter().map(excess).sum::<f64>() / pixels.len() as f64,
+        standard_error: standard_error(pixels, excess),
     }
 }
 

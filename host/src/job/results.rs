@@ -240,10 +240,14 @@ impl Results<'_> {
             let bias = lockstep
                 .bias
                 .map_or_else(|| "-".to_owned(), |bias| format!("{:+.4} %", 100.0 * bias));
+            let noise = lockstep
+                .bias_standard_error
+                .map(|noise| format!(" (standard error {:.4} %)", 100.0 * noise))
+                .unwrap_or_default();
             line(
                 "lockstep",
                 format!(
-                    "bias {bias}, rms difference {:.5}: arithmetic alone",
+                    "bias {bias}{noise}, rms difference {:.5}: arithmetic alone",
                     lockstep.rmse
                 ),
             );

@@ -75,7 +75,7 @@ pub enum BenchError {
         /// What is done.
         operation: &'static str,
         /// By which function.
-        variant: &'static str,
+        variant: String,
         /// The core's hash.
         core: u64,
         /// The host's hash.
@@ -171,7 +171,7 @@ fn compare(entry: &Entry, line: &Line) -> Result<(), BenchError> {
     }
     Err(BenchError::Transcript {
         operation: entry.operation,
-        variant: entry.variant,
+        variant: entry.name(),
         core: line.transcript,
         host,
         cases: line.cases,

@@ -51,6 +51,16 @@ pub struct Entry {
     pub can_be_exhausted: bool,
 }
 
+impl Entry {
+    /// What files and drawings call it: where the function is another crate's, with that crate, for `sqrt` has many makers.
+    pub fn name(&self) -> String {
+        match self.maker {
+            Maker::Ours | Maker::Published => self.variant.to_owned(),
+            Maker::Rival(maker) => format!("{maker} {}", self.variant),
+        }
+    }
+}
+
 /// The rows of a group, in the order in which its image prints them.
 pub fn entries(group: Group) -> Vec<Entry> {
     let mut list = List {
@@ -88,8 +98,12 @@ impl Visitor for List {
 pub struct Row {
     /// What is done.
     pub op: &'static str,
-    /// By which function.
+    /// By which function, for lists with its maker beside it.
+    #[serde(skip)]
     pub variant: &'static str,
+    /// The same as [`Entry::name`] has it.
+    #[serde(rename = "variant")]
+    pub name: String,
     /// `ours`, `published`, or the name of a crate.
     pub maker: &'static str,
     /// The board whose core they are of.
@@ -138,7 +152,7 @@ pub enum PriceError {
         /// What is done.
         operation: &'static str,
         /// By which function.
-        variant: &'static str,
+        variant: String,
     },
 }
 
@@ -166,7 +180,7 @@ pub fn with_errors(measurements: &[Measurement]) -> Result<Vec<Row>, PriceError>
             if recorded.is_some_and(|proof| !proof.holds(entry)) {
                 return Err(PriceError::Stale {
                     operation: entry.operation,
-                    variant: entry.variant,
+                    variant: entry.name(),
                 });
             }
             let is_proof = recorded.is_some() && entry.can_be_exhausted;
@@ -184,6 +198,7 @@ fn row(measurement: &Measurement, errors: Option<&Proof>, is_proof: bool) -> Row
     Row {
         op: entry.operation,
         variant: entry.variant,
+        name: entry.name(),
         maker: maker_name(entry.maker),
         board: measurement.board,
         instructions: measurement.instructions,
@@ -210,5 +225,47 @@ pub fn maker_name(maker: Maker) -> &'static str {
         Maker::Ours => "ours",
         Maker::Published => "published",
         Maker::Rival(name) => name,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::{BTreeMap, BTreeSet};
+    use std::path::PathBuf;
+
+    use super::*;
+
+    #[test]
+    fn every_row_of_an_operation_has_a_name_of_its_own_and_says_whose_it_is() {
+        let mut names = BTreeSet::new();
+        for entry in Group::ALL.into_iter().flat_map(entries) {
+            let name = entry.name();
+            if let Maker::Rival(maker) = entry.maker {
+                assert!(name.starts_with(maker) && name != maker, "{name}");
+            }
+            let operation = entry.operation;
+            let json = serde_json::to_value(row(&measured(entry), None, false)).expect("it is plain data");
+            assert_eq!(json["variant"], name);
+            assert!(
+                names.insert((operation, name.clone())),
+                "two rows of {operation} are called {name}"
+            );
+        }
+    }
+
+    fn measured(entry: Entry) -> Measurement {
+        Measurement {
+            entry,
+            board: Board::default(),
+            instructions: 1.0,
+            called_instructions: 1.0,
+            reach: reach::Reach {
+                bytes: 4,
+                symbols: Vec::new(),
+                tables: BTreeMap::new(),
+            },
+            elf: PathBuf::new(),
+            compiler: String::new(),
+        }
     }
 }

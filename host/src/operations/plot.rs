@@ -186,16 +186,16 @@ fn panels(rows: &[Row]) -> Vec<Panel> {
 /// A row's mark, if it has an error: what is exact has no place on a logarithmic axis.
 fn point(row: &Row, group: &[&Row]) -> Option<Point> {
     let error = row.max_error_ulp.filter(|&error| error > 0.0)?;
-    let (kind, label) = match row.maker {
-        "ours" => (Kind::Ours, row.variant.to_owned()),
-        "published" => (Kind::Published, row.variant.to_owned()),
-        maker => (Kind::Rival, format!("{maker} {}", row.variant)),
+    let kind = match row.maker {
+        "ours" => Kind::Ours,
+        "published" => Kind::Published,
+        _ => Kind::Rival,
     };
     Some(Point {
         cost: row.instructions,
         error,
         kind,
-        label,
+        label: row.name.clone(),
         on_front: is_on_front(row, group),
     })
 }
