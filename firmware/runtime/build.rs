@@ -4,12 +4,12 @@
 //! which every combination would be a different crate graph:
 //!
 //! - `TRACER_PROFILE`: `precise` (the default) or `paper`;
-//! - `TRACER_NEEDS`: a comma-separated list of `diffuse`, `mirror`, `glass` and `roulette`; all of them by default.
+//! - `TRACER_NEEDS`: a comma-separated list of `diffuse`, `mirror`, `glass`, `twosided` and `roulette`; all of them by default.
 
 use std::path::Path;
 use std::{env, fs};
 
-const NEEDS: [&str; 4] = ["diffuse", "mirror", "glass", "roulette"];
+const NEEDS: [&str; 5] = ["diffuse", "mirror", "glass", "twosided", "roulette"];
 
 fn main() {
     let out = env::var("OUT_DIR").expect("cargo sets OUT_DIR");

@@ -8,12 +8,13 @@ use tracer::unit::{Plan, RUN, render};
 use crate::film::Film;
 use crate::lockstep;
 use crate::picture::Estimate;
+use crate::scene::CompiledScene;
 
 /// The film that any fleet must end with.
 ///
 /// # Panics
 /// If the plan has more units than there are ids.
-pub fn film<P: Profile>(blob: &[u8], plan: &Plan) -> Result<Film, BlobError> {
+pub fn film<P: Profile>(compiled: &CompiledScene, plan: &Plan) -> Result<Film, BlobError> {
     let units = plan.units().expect("unit ids fit 32 bits");
     let render_unit = |scene: &mut Result<Scene<P::Numbers>, BlobError>, id| {
         let scene = scene.as_ref().map_err(|error| *error)?;
@@ -24,9 +25,9 @@ pub fn film<P: Profile>(blob: &[u8], plan: &Plan) -> Result<Film, BlobError> {
     // A scene's numbers need not be fit to be shared between threads, so each thread has its own.
     let sums: Vec<_> = (0..units)
         .into_par_iter()
-        .map_init(|| Scene::decode::<All>(blob), render_unit)
+        .map_init(|| Scene::decode::<All>(&compiled.blob), render_unit)
         .collect::<Result<_, _>>()?;
-    let mut film = Film::new(plan.width, plan.height);
+    let mut film = Film::new(plan.width, plan.height).with_exponent(compiled.exponent);
     for (id, sums) in (0..units).zip(&sums) {
         let extent = plan.extent(id);
         let run = &sums[..usize::from(extent.pixels)];
@@ -40,10 +41,13 @@ pub fn film<P: Profile>(blob: &[u8], plan: &Plan) -> Result<Film, BlobError> {
 ///
 /// # Panics
 /// If the plan has more units than there are ids.
-pub fn estimate<P: Profile>(blob: &[u8], plan: &Plan) -> Result<(Estimate, Estimate), BlobError> {
-    let lockstep = lockstep::render::<P>(blob, plan, |_| ())?;
+pub fn estimate<P: Profile>(
+    compiled: &CompiledScene,
+    plan: &Plan,
+) -> Result<(Estimate, Estimate), BlobError> {
+    let lockstep = lockstep::render::<P>(compiled, plan, |_| ())?;
     let fixed = Estimate {
-        picture: film::<P>(blob, plan)?.picture(),
+        picture: film::<P>(compiled, plan)?.picture(),
         ..lockstep.clone()
     };
     Ok((fixed, lockstep))

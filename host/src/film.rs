@@ -8,13 +8,14 @@ use sha2::{Digest, Sha256};
 use crate::picture::Picture;
 
 /// Fraction bits of a sum.
-const FRACTION_BITS: u32 = 16;
+const FRACTION_BITS: i32 = 16;
 
 /// Sums and sample counts of a whole picture, row-major from the top row.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Film {
     width: u16,
     height: u16,
+    exponent: i32,
     sums: Vec<[u64; 3]>,
     counts: Vec<u32>,
 }
@@ -49,9 +50,15 @@ impl Film {
         Self {
             width,
             height,
+            exponent: 0,
             sums: vec![[0; 3]; pixels],
             counts: vec![0; pixels],
         }
+    }
+
+    /// The same, whose sums are 2^exponent times the scene's radiance (see `scene::CompiledScene`).
+    pub fn with_exponent(self, exponent: i32) -> Self {
+        Self { exponent, ..self }
     }
 
     /// Width and height in pixels.
@@ -105,7 +112,7 @@ impl Film {
 
     /// Each pixel's mean radiance; a pixel without samples has none.
     pub fn picture(&self) -> Picture {
-        let scale = 1.0 / f64::from(1u32 << FRACTION_BITS);
+        let scale = 2f64.powi(-(FRACTION_BITS + self.exponent));
         let pixels = self.sums.iter().zip(&self.counts).map(|(sum, &count)| {
             (count > 0).then(|| sum.map(|component| component as f64 * scale / f64::from(count)))
         });
@@ -182,6 +189,14 @@ mod tests {
         film.add(0, 4, &[[4 << 16, 2 << 16, 1]]).unwrap();
         let picture = film.picture();
         assert_eq!(picture.pixels(), [Some([1.0, 0.5, 2.0 / 65536.0 / 8.0]), None]);
+    }
+
+    #[test]
+    fn the_exponent_is_taken_out_again() {
+        let mut film = Film::new(1, 1).with_exponent(20);
+        film.add(0, 4, &[[4 << 16, 2 << 16, 1 << 16]]).unwrap();
+        let unit = 2f64.powi(-20);
+        assert_eq!(film.picture().pixels(), [Some([unit, unit / 2.0, unit / 4.0])]);
     }
 
     #[test]

@@ -204,6 +204,7 @@ pub fn build_examples(
             diffuse: true,
             mirror: true,
             glass: true,
+            two_sided: true,
         },
         roulette: true,
         log,
@@ -453,6 +454,7 @@ mod tests {
             diffuse: true,
             mirror: false,
             glass: true,
+            two_sided: false,
         };
         let recipe = Recipe {
             profile: Arithmetic::Paper,
@@ -477,6 +479,7 @@ mod tests {
             diffuse: false,
             mirror: false,
             glass: false,
+            two_sided: false,
         };
         assert_eq!(
             Recipe {

@@ -13,6 +13,7 @@ use tracer::scene::{All, BlobError, Scene};
 use tracer::unit::{Plan, walk};
 
 use crate::picture::{Estimate, Picture};
+use crate::scene::CompiledScene;
 
 /// `f64` for every quantity.
 #[derive(Clone, Copy, Debug)]
@@ -35,11 +36,12 @@ impl<P: Profile> Profile for Lockstep<P> {
 ///
 /// `progress` is told of samples done since it was last told.
 pub fn render<P: Profile>(
-    blob: &[u8],
+    compiled: &CompiledScene,
     plan: &Plan,
     progress: impl Fn(u64) + Sync,
 ) -> Result<Estimate, BlobError> {
-    let scene = Scene::<Double>::decode::<All>(blob)?;
+    let scene = Scene::<Double>::decode::<All>(&compiled.blob)?;
+    let unit = 2f64.powi(-compiled.exponent);
     let runs: Vec<Vec<Moments>> = (0..plan.runs())
         .into_par_iter()
         .map(|run| {
@@ -47,7 +49,7 @@ pub fn render<P: Profile>(
             for pass in 0..plan.passes() {
                 let id = pass * plan.runs() + run;
                 walk::<Lockstep<P>, All>(&scene, plan, id, |pixel, sample| {
-                    moments[pixel].add(sample.radiance)
+                    moments[pixel].add(sample.radiance.map(|radiance| radiance * unit))
                 });
                 let extent = plan.extent(id);
                 progress(u64::from(extent.pixels) * u64::from(extent.samples));
@@ -113,6 +115,7 @@ impl Numbers for Double {
     type Reciprocal = f64;
 
     const NOTHING: f64 = 0.0;
+    const GRAZING: f64 = 0.0;
     const FAR: f64 = 1e9;
     const ONE: f64 = 1.0;
     const ZERO: f64 = 0.0;

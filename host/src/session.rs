@@ -17,6 +17,8 @@ pub struct Session {
     pub scene: Vec<u8>,
     /// The scene's id, as cores repeat it.
     pub scene_id: u32,
+    /// Cores' radiance is the scene's times 2^exponent.
+    pub exponent: i32,
     /// The camera's epoch.
     pub epoch: u16,
     /// The picture and how it is cut into units.
@@ -127,6 +129,7 @@ pub(crate) mod tests {
             cores,
             scene_id: wire::crc32(&scene),
             scene,
+            exponent: 0,
             epoch: 0,
             plan: Plan {
                 width: 32,

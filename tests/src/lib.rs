@@ -46,8 +46,8 @@ pub fn plan<P: Profile>(width: u16, height: u16, spp: u32) -> Plan {
 /// # Panics
 /// If the compiled scene is refused.
 pub fn film<P: Profile>(scene: &Scene, plan: &Plan) -> Film {
-    let blob = compile(scene, plan.width, plan.height).blob;
-    direct::film::<P>(&blob, plan).expect("a compiled scene is decoded")
+    let compiled = compile(scene, plan.width, plan.height);
+    direct::film::<P>(&compiled, plan).expect("a compiled scene is decoded")
 }
 
 /// `P`'s picture, with the variance that the lockstep oracle measures on the same paths.
@@ -55,8 +55,8 @@ pub fn film<P: Profile>(scene: &Scene, plan: &Plan) -> Film {
 /// # Panics
 /// If the compiled scene is refused.
 pub fn estimate<P: Profile>(scene: &Scene, plan: &Plan) -> (Estimate, Estimate) {
-    let blob = compile(scene, plan.width, plan.height).blob;
-    direct::estimate::<P>(&blob, plan).expect("a compiled scene is decoded")
+    let compiled = compile(scene, plan.width, plan.height);
+    direct::estimate::<P>(&compiled, plan).expect("a compiled scene is decoded")
 }
 
 /// The firmware's compiler, which must be there.

@@ -44,6 +44,7 @@ impl<N: Numbers> Camera<N> {
             origin,
             direction,
             leaves: None,
+            outward: [N::ZERO; 3],
         }
     }
 }

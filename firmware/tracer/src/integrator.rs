@@ -61,7 +61,7 @@ impl<'s, P: Profile, F: Needs> Path<'s, P, F> {
         let mut rays = 0;
         loop {
             rays += 1;
-            let Some(hit) = P::Intersection::nearest(self.scene, &ray, self.epsilon) else {
+            let Some(hit) = P::Intersection::nearest::<_, F>(self.scene, &ray, self.epsilon) else {
                 break;
             };
             let surface = &hit.sphere.surface;
@@ -80,7 +80,10 @@ impl<'s, P: Profile, F: Needs> Path<'s, P, F> {
             for channel in 0..3 {
                 throughput[channel] = P::Numbers::attenuate(throughput[channel], share[channel]);
             }
-            let facing = if hit.sphere.hollow {
+            let from_inside = F::TWOSIDED
+                && hit.sphere.two_sided
+                && P::Numbers::cosine(ray.direction, hit.outward) > P::Numbers::ZERO;
+            let facing = if hit.sphere.hollow || from_inside {
                 vector::neg(hit.outward)
             } else {
                 hit.outward
@@ -96,6 +99,7 @@ impl<'s, P: Profile, F: Needs> Path<'s, P, F> {
                 origin: hit.point,
                 direction,
                 leaves: Some(hit.sphere),
+                outward: hit.outward,
             };
         }
         Sample { radiance, rays }

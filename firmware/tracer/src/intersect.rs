@@ -1,8 +1,9 @@
 //! Where a ray meets the nearest sphere.
 
+use crate::material::mirrored;
 use crate::numbers::Numbers;
 use crate::ray::Ray;
-use crate::scene::Scene;
+use crate::scene::{Needs, Scene};
 use crate::sphere::Sphere;
 use crate::vector;
 
@@ -19,8 +20,8 @@ pub struct Hit<'s, N: Numbers> {
 
 /// A way to find the nearest hit.
 pub trait Intersection {
-    /// The nearest hit of `ray`; hits nearer than `epsilon` may be the surface it leaves.
-    fn nearest<'s, N: Numbers>(
+    /// The nearest hit of `ray`; hits nearer than `epsilon` may be the surface it leaves. `F` is what the scene needs.
+    fn nearest<'s, N: Numbers, F: Needs>(
         scene: &'s Scene<N>,
         ray: &Ray<'s, N>,
         epsilon: N::Length,
@@ -32,7 +33,7 @@ pub trait Intersection {
 pub enum Textbook {}
 
 impl Intersection for Textbook {
-    fn nearest<'s, N: Numbers>(
+    fn nearest<'s, N: Numbers, F: Needs>(
         scene: &'s Scene<N>,
         ray: &Ray<'s, N>,
         epsilon: N::Length,
@@ -68,9 +69,15 @@ impl Intersection for Textbook {
 /// With `b = (c - o) . d` and the power of the origin turned round, `p = r^2 - |c - o|^2` (positive inside), the roots are
 /// `b - sqrt(b^2 + p)` and `b + sqrt(b^2 + p)`. A hollow sphere is seen from inside and has only the second; that one is
 /// nearer than `t` exactly when `t > b` and `(t - b)^2 > b^2 + p`, and only then is the root taken. A solid one has only
-/// the first, and only where `p < 0 < b`, unless it lets light through. From the sphere that a ray leaves, one root is the
-/// start itself, which is left out by identity and not by distance; the other is `2 b`, exactly. The hit point is put back
-/// on its sphere.
+/// the first, and only where `p < 0 < b`, unless it has an inside: it lets light through, or rays start in it. From the
+/// sphere that a ray leaves, one root is the start itself, which is left out by identity and not by distance; the other is
+/// `2 b`, exactly. The hit point is put back on its sphere.
+///
+/// Within a solid, a ray's normal where it arrives is the normal where it left, mirrored in the plane across the ray: that
+/// is taken from directions alone, and so the angle with the surface is the same at both ends to 2^-29, however coarse the
+/// positions are beside the radius. Were it taken from positions, light that grazed a small glass ball could find itself
+/// past the critical angle within, and stay there. For the same reason a ray misses such a solid where half its chord is no
+/// longer than the hit point's rounding: its normal could lie on either side.
 #[derive(Clone, Copy, Debug)]
 pub enum Power {}
 
@@ -88,9 +95,12 @@ impl<'s, N: Numbers> Nearest<'s, N> {
         if ray.leaves(sphere) {
             return self.chord(sphere, b, epsilon);
         }
-        let discriminant = N::product(b, b) + (sphere.square - N::dot(to_centre, to_centre));
         let beyond = self.t - b;
-        if beyond <= N::NOTHING || N::product(beyond, beyond) <= discriminant {
+        if beyond <= N::NOTHING {
+            return;
+        }
+        let discriminant = N::product(b, b) + (sphere.square - N::dot(to_centre, to_centre));
+        if N::product(beyond, beyond) <= discriminant {
             return;
         }
         // Rounding may have put the start an ulp outside: then the hit is at once, and not behind.
@@ -100,16 +110,16 @@ impl<'s, N: Numbers> Nearest<'s, N> {
     }
 
     #[inline]
-    fn solid(&mut self, sphere: &'s Sphere<N>, ray: &Ray<'s, N>, epsilon: N::Length) {
+    fn solid<F: Needs>(&mut self, sphere: &'s Sphere<N>, ray: &Ray<'s, N>, epsilon: N::Length) {
         let to_centre = vector::sub(sphere.centre, ray.origin);
         let projection = N::project(to_centre, ray.direction);
         let b = N::length_of(projection);
-        let transmits = sphere.surface.transmits();
-        if b <= N::NOTHING && !transmits {
+        let has_inside = sphere.has_inside::<F>();
+        if b <= N::NOTHING && !has_inside {
             return;
         }
         if ray.leaves(sphere) {
-            if transmits {
+            if has_inside {
                 self.chord(sphere, b, epsilon);
             }
             return;
@@ -117,11 +127,14 @@ impl<'s, N: Numbers> Nearest<'s, N> {
         let power = sphere.square - N::dot(to_centre, to_centre);
         let discriminant = N::squared(projection) + power;
         let inside = power >= N::NO_SQUARE;
-        let hidden = if inside { !transmits } else { b <= N::NOTHING };
+        let hidden = if inside { !has_inside } else { b <= N::NOTHING };
         if hidden || discriminant < N::NO_SQUARE {
             return;
         }
         let root = N::root(discriminant);
+        if has_inside && root <= N::GRAZING {
+            return;
+        }
         let t = if inside { b + root } else { b - root };
         if t > epsilon && t < self.t {
             (self.t, self.sphere) = (t, Some(sphere));
@@ -140,7 +153,7 @@ impl<'s, N: Numbers> Nearest<'s, N> {
 
 impl Intersection for Power {
     #[inline]
-    fn nearest<'s, N: Numbers>(
+    fn nearest<'s, N: Numbers, F: Needs>(
         scene: &'s Scene<N>,
         ray: &Ray<'s, N>,
         epsilon: N::Length,
@@ -153,12 +166,16 @@ impl Intersection for Power {
             nearest.hollow(sphere, ray, epsilon);
         }
         for sphere in scene.solid() {
-            nearest.solid(sphere, ray, epsilon);
+            nearest.solid::<F>(sphere, ray, epsilon);
         }
         let sphere = nearest.sphere?;
-        let from_centre =
-            [0, 1, 2].map(|i| ray.origin[i] - sphere.centre[i] + N::scale(nearest.t, ray.direction[i]));
-        let outward = N::normal(from_centre, sphere.reciprocal);
+        let outward = if sphere.has_inside::<F>() && ray.leaves(sphere) {
+            mirrored::<N>(ray.outward, ray.direction)
+        } else {
+            let from_centre =
+                [0, 1, 2].map(|i| ray.origin[i] - sphere.centre[i] + N::scale(nearest.t, ray.direction[i]));
+            N::normal(from_centre, sphere.reciprocal)
+        };
         let point = [0, 1, 2].map(|i| sphere.centre[i] + N::scale(sphere.radius, outward[i]));
         Some(Hit {
             sphere,

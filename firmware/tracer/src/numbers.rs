@@ -40,6 +40,8 @@ pub trait Numbers: Copy + Debug + 'static {
 
     /// No length.
     const NOTHING: Self::Length;
+    /// How far rounding can move a hit along the ray.
+    const GRAZING: Self::Length;
     /// Longer than any distance in a scene.
     const FAR: Self::Length;
     /// A cosine or probability of 1.

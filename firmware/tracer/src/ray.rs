@@ -14,6 +14,8 @@ pub struct Ray<'s, N: Numbers> {
     pub direction: [N::Unit; 3],
     /// The sphere it starts on.
     pub leaves: Option<&'s Sphere<N>>,
+    /// That sphere's outward unit normal there: where on the sphere it starts, more finely than `origin` says.
+    pub outward: [N::Unit; 3],
 }
 
 impl<N: Numbers> Ray<'_, N> {

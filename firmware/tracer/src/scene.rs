@@ -20,6 +20,8 @@ pub trait Needs {
     const MIRROR: bool;
     /// A dielectric.
     const GLASS: bool;
+    /// A solid that camera rays start in.
+    const TWOSIDED: bool;
     /// Russian roulette; otherwise paths end at a fixed depth.
     const ROULETTE: bool;
 }
@@ -32,6 +34,7 @@ impl Needs for All {
     const DIFFUSE: bool = true;
     const MIRROR: bool = true;
     const GLASS: bool = true;
+    const TWOSIDED: bool = true;
     const ROULETTE: bool = true;
 }
 
@@ -85,7 +88,7 @@ impl<N: Numbers> Scene<N> {
                 MaterialRecord::Mirror => F::MIRROR,
                 MaterialRecord::Glass { .. } => F::GLASS,
             };
-            if !supported {
+            if !supported || (record.two_sided && !F::TWOSIDED) {
                 return Err(BlobError::NotInThisImage);
             }
             *sphere = Sphere::of_record(&record, i < hollow);
@@ -137,6 +140,7 @@ impl<N: Numbers> Sphere<N> {
             radius: N::length(record.radius),
             reciprocal: N::reciprocal(record.radius, record.reciprocal, record.shift),
             hollow,
+            two_sided: record.two_sided,
             surface: Surface {
                 emits: record.emission != [0; 3],
                 emission: record.emission,

@@ -15,6 +15,7 @@ impl Needs for OnlyDiffuse {
     const DIFFUSE: bool = true;
     const MIRROR: bool = false;
     const GLASS: bool = false;
+    const TWOSIDED: bool = false;
     const ROULETTE: bool = true;
 }
 
@@ -27,7 +28,10 @@ fn decode<F: Needs>(blob: &[u8]) -> Result<(usize, usize), BlobError> {
 fn records_survive_the_round_trip() {
     for material in [MaterialRecord::Diffuse, MaterialRecord::Mirror, GLASS] {
         let record = sphere([1.5, -2.25, 1e4], 16.5, 0.75, material);
-        assert_eq!(SphereRecord::decode(&record.encode()), Ok(record));
+        for two_sided in [false, true] {
+            let record = SphereRecord { two_sided, ..record };
+            assert_eq!(SphereRecord::decode(&record.encode()), Ok(record));
+        }
     }
     let blob = blob([1.0, 2.0, 3.0], &[], &[], 64);
     let (header, rest) = Header::decode(&blob).unwrap();
@@ -98,9 +102,22 @@ fn faulty_blobs_are_refused() {
         Err(BlobError::BadCounts),
         "more hollow spheres than spheres"
     );
-    let mut bad = good;
-    bad[HEADER_BYTES + 29] = 3;
-    assert_eq!(decode::<All>(&bad), Err(BlobError::BadMaterial));
+    for (byte, value) in [(29, 3), (30, 2), (31, 1)] {
+        let mut bad = good.clone();
+        bad[HEADER_BYTES + byte] = value;
+        assert_eq!(decode::<All>(&bad), Err(BlobError::BadMaterial));
+    }
+}
+
+#[test]
+fn a_solid_that_is_cut_open_needs_code_for_its_inside() {
+    let ball = SphereRecord {
+        two_sided: true,
+        ..sphere([0.0; 3], 1.0, 0.5, MaterialRecord::Diffuse)
+    };
+    let blob = blob([0.0; 3], &[], &[ball], 8);
+    assert_eq!(decode::<All>(&blob), Ok((0, 1)));
+    assert_eq!(decode::<OnlyDiffuse>(&blob), Err(BlobError::NotInThisImage));
 }
 
 #[test]
@@ -110,6 +127,7 @@ fn a_black_wall_needs_no_diffuse_code() {
         const DIFFUSE: bool = false;
         const MIRROR: bool = false;
         const GLASS: bool = false;
+        const TWOSIDED: bool = false;
         const ROULETTE: bool = false;
     }
     let wall = |reflectance| {

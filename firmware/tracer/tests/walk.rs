@@ -5,7 +5,7 @@ mod support;
 use fixedmath::{I2F30, I16F16};
 use support::{GLASS, blob, sphere};
 use tracer::intersect::{Intersection, Power, Textbook};
-use tracer::material::{Basis, Diffuse, Offset};
+use tracer::material::{Basis, Bsdf, Diffuse, Offset, mirrored};
 use tracer::numbers::{Mixed, Numbers, Published};
 use tracer::profile::{Paper, Precise, Profile};
 use tracer::random::{FullState, LowBits, Random};
@@ -99,9 +99,10 @@ fn a_ray_never_meets_at_once_the_surface_it_leaves() {
             origin: [I16F16::ZERO; 3],
             direction,
             leaves: None,
+            outward: [I2F30::ZERO; 3],
         };
         for _ in 0..4 {
-            let Some(hit) = Power::nearest(&scene, &ray, epsilon) else {
+            let Some(hit) = Power::nearest::<_, All>(&scene, &ray, epsilon) else {
                 panic!("the room is closed")
             };
             let travelled = length([0, 1, 2].map(|i| (hit.point[i] - ray.origin[i]).to_num()));
@@ -128,6 +129,7 @@ fn a_ray_never_meets_at_once_the_surface_it_leaves() {
                 origin: hit.point,
                 direction: Offset::direction::<Mixed, _>(facing, &mut random),
                 leaves: Some(hit.sphere),
+                outward: hit.outward,
             };
         }
     }
@@ -136,6 +138,73 @@ fn a_ray_never_meets_at_once_the_surface_it_leaves() {
         "hollow spheres are met again, at the far end of a chord: {hits}"
     );
     assert!(tiny <= 10, "{tiny} of {hits} chords are shorter than 0.001");
+}
+
+/// Light that has entered a ball meets its surface at one angle for ever, and below the critical one, however small the ball
+/// and however flat the light came in.
+#[test]
+fn light_within_a_glass_ball_keeps_its_angle() {
+    let mut random = FullState::for_unit(6, 6);
+    for radius in [1.0 / 256.0, 0.01, 0.1, 1.0, 16.5, 1000.0, 10_000.0] {
+        let wall = sphere([0.0; 3], 10_900.0, 0.7, MaterialRecord::Diffuse);
+        let ball = sphere([0.0; 3], radius, 0.9, GLASS);
+        let scene = Scene::<Mixed>::decode::<All>(&blob([0.0; 3], &[wall], &[ball], 8)).unwrap();
+        let Bsdf::Glass(glass) = &scene.solid()[0].surface.bsdf else {
+            panic!("the ball is glass")
+        };
+        let mut entered = 0;
+        for ray in 0..2000 {
+            let outward = Offset::direction::<Mixed, _>([I2F30::ZERO, I2F30::ZERO, I2F30::ONE], &mut random);
+            // Ever flatter: the sine of the angle with the surface goes down to 2^-16.
+            let steep = I2F30::from_bits(1 << (29 - ray % 16));
+            let aside = Offset::direction::<Mixed, _>(outward, &mut random);
+            let height = Mixed::cosine(aside, outward);
+            let along = [0, 1, 2].map(|i| aside[i] - Mixed::times(outward[i], height));
+            let along = Mixed::normalised(along, outward);
+            let from = Mixed::normalised(
+                [0, 1, 2].map(|i| along[i] - Mixed::times(outward[i], steep)),
+                outward,
+            );
+            let mut ray = Ray {
+                origin: [0, 1, 2].map(|i| Mixed::scale(I16F16::from_num(radius), outward[i])),
+                direction: glass.direction(from, outward, &mut random),
+                leaves: Some(&scene.solid()[0]),
+                outward,
+            };
+            let first = Mixed::cosine(ray.direction, ray.outward).to_num::<f64>();
+            if first > 0.0 {
+                continue;
+            }
+            entered += 1;
+            for _ in 0..100 {
+                let hit = Power::nearest::<_, All>(&scene, &ray, I16F16::from_bits(16)).unwrap();
+                assert!(
+                    std::ptr::eq(hit.sphere, &scene.solid()[0]),
+                    "the ball of {radius} was left"
+                );
+                let cosine = Mixed::cosine(ray.direction, hit.outward);
+                // 2^-29 a bounce.
+                let apart = cosine.to_num::<f64>() + first;
+                assert!(apart.abs() < 100.0 * 2f64.powi(-29), "{radius}: {apart}");
+                let square = Mixed::refracted_square(cosine, glass.leaving_squared);
+                // The index squared times twice the cosine is at most 4.5, times 100 bounces: 225 units of 2^-28.
+                assert!(
+                    square > -(1 << 8),
+                    "{radius}: past the critical angle by {square}"
+                );
+                ray = Ray {
+                    origin: hit.point,
+                    direction: mirrored::<Mixed>(ray.direction, hit.outward.map(|c| -c)),
+                    leaves: Some(hit.sphere),
+                    outward: hit.outward,
+                };
+            }
+        }
+        assert!(
+            entered > 200,
+            "{entered} of 2,000 rays entered the ball of {radius}"
+        );
+    }
 }
 
 #[test]
@@ -158,9 +227,10 @@ fn both_formulas_find_the_same_hits() {
             origin: [I16F16::ZERO; 3],
             direction,
             leaves: None,
+            outward: [I2F30::ZERO; 3],
         };
-        let ours = Power::nearest(&scene, &ray, I16F16::from_bits(16)).unwrap();
-        let theirs = Textbook::nearest(&scene, &ray, I16F16::from_bits(16)).unwrap();
+        let ours = Power::nearest::<_, All>(&scene, &ray, I16F16::from_bits(16)).unwrap();
+        let theirs = Textbook::nearest::<_, All>(&scene, &ray, I16F16::from_bits(16)).unwrap();
         if !std::ptr::eq(ours.sphere, theirs.sphere) {
             other += 1;
             continue;

@@ -106,7 +106,7 @@ impl<'a> Run<'a> {
             fleet,
             progress,
             start: Instant::now(),
-            film: Film::new(session.plan.width, session.plan.height),
+            film: Film::new(session.plan.width, session.plan.height).with_exponent(session.exponent),
             work: match session.order {
                 PixelOrder::Leased => Work::Leased(Leases::new(units)),
                 PixelOrder::Sequential | PixelOrder::Stochastic => Work::Free(HashSet::new()),

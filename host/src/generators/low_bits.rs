@@ -93,11 +93,13 @@ impl Pictures {
             termination: Termination::Roulette,
             epsilon: Precise::EPSILON,
         };
-        let blob = compile(scene, width, height).blob;
+        let compiled = compile(scene, width, height);
         let whole = "the compiler in this very program wrote the blob";
         Self {
-            full_state: direct::estimate::<Precise>(&blob, &plan).expect(whole).0,
-            low_bits: direct::estimate::<PreciseByLowBits>(&blob, &plan).expect(whole).0,
+            full_state: direct::estimate::<Precise>(&compiled, &plan).expect(whole).0,
+            low_bits: direct::estimate::<PreciseByLowBits>(&compiled, &plan)
+                .expect(whole)
+                .0,
             reference,
         }
     }

@@ -197,6 +197,7 @@ impl Job {
             cores: self.options.cores,
             scene: self.compiled.blob.clone(),
             scene_id: self.compiled.id,
+            exponent: self.compiled.exponent,
             epoch: 0,
             plan: self.plan,
             order: self.options.pixels.into(),

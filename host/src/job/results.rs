@@ -101,12 +101,12 @@ impl Results<'_> {
         if options.pixels == Pixels::Stochastic {
             return None;
         }
-        let (blob, plan) = (&self.job.compiled.blob, &self.job.plan);
+        let (compiled, plan) = (&self.job.compiled, &self.job.plan);
         let bar = bar("lockstep", self.collection.film.samples());
         let done = |samples| bar.inc(samples);
         let rendered = match options.profile {
-            Arithmetic::Paper => lockstep::render::<Paper>(blob, plan, done),
-            Arithmetic::Precise => lockstep::render::<Precise>(blob, plan, done),
+            Arithmetic::Paper => lockstep::render::<Paper>(compiled, plan, done),
+            Arithmetic::Precise => lockstep::render::<Precise>(compiled, plan, done),
         };
         bar.finish_and_clear();
         Some(rendered.expect("the compiler in this very program wrote the blob"))
@@ -214,15 +214,20 @@ impl Results<'_> {
             // Writing to a string does not fail.
             let _ = writeln!(text, "{name:8} {said}");
         };
+        if let Some(warning) = tiles_off(report) {
+            line("WARNING", warning);
+        }
         line("mean", means(report));
         let error = &report.error;
         if let Some(bias) = error.bias {
             let noise = error
                 .bias_standard_error
                 .map(|noise| format!(" (standard error {:.3} %)", 100.0 * noise));
-            let rmse = error.rmse.map(|rmse| format!(", rmse {rmse:.5}"));
+            let rmse = error.rmse.map(|rmse| format!(", rmse {}", significant(rmse)));
             // Where noise hides the error, the bound is what can be said of it.
-            let most = error.rmse_at_most.map(|most| format!(" (at most {most:.5})"));
+            let most = error
+                .rmse_at_most
+                .map(|most| format!(" (at most {})", significant(most)));
             let [noise, rmse, most] = [noise, rmse, most].map(Option::unwrap_or_default);
             line("bias", format!("{:+.3} %{noise}{rmse}{most}", 100.0 * bias));
         }
@@ -247,8 +252,8 @@ impl Results<'_> {
             line(
                 "lockstep",
                 format!(
-                    "bias {bias}{noise}, rms difference {:.5}: arithmetic alone",
-                    lockstep.rmse
+                    "bias {bias}{noise}, rms difference {}: arithmetic alone",
+                    significant(lockstep.rmse)
                 ),
             );
         }
@@ -311,13 +316,34 @@ fn bar(name: &'static str, samples: u64) -> ProgressBar {
     ProgressBar::new(samples).with_style(style).with_prefix(name)
 }
 
+/// What is to be said before all else: the picture is wrong somewhere, and where to look.
+fn tiles_off(report: &Report) -> Option<String> {
+    let tiles = report.error.tiles.as_ref().filter(|tiles| tiles.failed > 0)?;
+    Some(format!(
+        "the picture is off by more than noise explains: {} of {} tile tests fail; difference.png shows where",
+        tiles.failed, tiles.tested
+    ))
+}
+
 fn means(report: &Report) -> String {
     let of = |mean: Option<[f64; 3]>| {
-        mean.map(|[r, g, b]| format!("{:.4} (red {r:.4}, green {g:.4}, blue {b:.4})", (r + g + b) / 3.0))
+        mean.map(|[r, g, b]| {
+            let [mean, r, g, b] = [(r + g + b) / 3.0, r, g, b].map(significant);
+            format!("{mean} (red {r}, green {g}, blue {b})")
+        })
     };
     let image = of(report.error.mean).unwrap_or_else(|| "-".to_owned());
     match of(report.error.reference_mean) {
         Some(reference) => format!("{image}; reference {reference}"),
         None => image,
+    }
+}
+
+/// Radiance with four or five digits that say something, however dim.
+fn significant(radiance: f64) -> String {
+    if radiance == 0.0 || radiance.abs() >= 0.001 {
+        format!("{radiance:.5}")
+    } else {
+        format!("{radiance:.3e}")
     }
 }

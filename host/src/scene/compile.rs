@@ -7,6 +7,10 @@ use std::fmt;
 
 use tracer::scene::{CameraRecord, Header, MaterialRecord, SphereRecord};
 
+use super::light::Light;
+use super::start::StartPatch;
+use super::validate::is_cut_open;
+use super::vector::{cross, normalised};
 use super::{Camera, Material, Scene, Sphere};
 
 /// A scene as cores get it.
@@ -18,9 +22,11 @@ pub struct CompiledScene {
     pub id: u32,
     /// What the image must be built with.
     pub needs: SceneNeeds,
+    /// Cores' radiance is the scene's times 2^exponent; 0 for all scenes but those whose light would not fit as it is.
+    pub exponent: i32,
 }
 
-/// Which materials a scene has.
+/// What a scene needs of the tracer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SceneNeeds {
     /// A diffuse surface that reflects at all.
@@ -29,6 +35,8 @@ pub struct SceneNeeds {
     pub mirror: bool,
     /// A dielectric.
     pub glass: bool,
+    /// A solid that camera rays start in.
+    pub two_sided: bool,
 }
 
 impl fmt::Display for SceneNeeds {
@@ -38,6 +46,7 @@ impl fmt::Display for SceneNeeds {
             (self.diffuse, "diffuse"),
             (self.mirror, "mirror"),
             (self.glass, "glass"),
+            (self.two_sided, "twosided"),
         ];
         let needed: Vec<&str> = words
             .into_iter()
@@ -46,6 +55,9 @@ impl fmt::Display for SceneNeeds {
         f.write_str(&needed.join(","))
     }
 }
+
+/// A sample lies up to this many pixels outside the film: a tent reaches a sub-pixel beyond the last one's centre.
+const FILTER: f64 = 0.25;
 
 /// Compiles a checked scene for a picture of `width` by `height` pixels.
 pub fn compile(scene: &Scene, width: u16, height: u16) -> CompiledScene {
@@ -57,20 +69,30 @@ pub fn compile(scene: &Scene, width: u16, height: u16) -> CompiledScene {
         hollow: hollow.len() as u16,
         camera: camera(&scene.camera, width, height),
     };
+    let exponent = Light::of(scene.spheres.iter()).exponent();
+    let patch = StartPatch::new(&scene.camera, width, height, FILTER);
     let mut blob = header.encode().to_vec();
+    let mut two_sided = false;
     for sphere in hollow.into_iter().chain(solid) {
-        blob.extend(record(sphere).encode());
+        let record = SphereRecord {
+            two_sided: is_cut_open(sphere, &patch),
+            ..record(sphere, exponent)
+        };
+        two_sided |= record.two_sided;
+        blob.extend(record.encode());
     }
     let has = |wanted: fn(&Material) -> bool| scene.spheres.iter().any(|sphere| wanted(&sphere.material));
     let needs = SceneNeeds {
         diffuse: has(|material| matches!(material, Material::Diffuse(colour) if *colour != [0.0; 3])),
         mirror: has(|material| matches!(material, Material::Mirror(_))),
         glass: has(|material| matches!(material, Material::Glass { .. })),
+        two_sided,
     };
     CompiledScene {
         id: wire::crc32(&blob),
         blob,
         needs,
+        exponent,
     }
 }
 
@@ -101,7 +123,7 @@ fn camera(camera: &Camera, width: u16, height: u16) -> CameraRecord {
 ///
 /// A direction is normalised after it is summed, so the scale is free, and a large one keeps more bits.
 fn film_scale(forward: [f64; 3], right: [f64; 3], up: [f64; 3], width: u16, height: u16) -> f64 {
-    // A tent reaches a sub-pixel beyond the last one's centre, a quarter of a pixel past the film's edge.
+    // Twice what the filter needs.
     let (x, y) = (0.5 + 0.5 / f64::from(width), 0.5 + 0.5 / f64::from(height));
     let sums = (0..3).map(|i| forward[i].abs() + right[i].abs() * x + up[i].abs() * y);
     let largest = sums
@@ -111,10 +133,10 @@ fn film_scale(forward: [f64; 3], right: [f64; 3], up: [f64; 3], width: u16, heig
     1.99 / largest
 }
 
-fn record(sphere: &Sphere) -> SphereRecord {
+fn record(sphere: &Sphere, exponent: i32) -> SphereRecord {
     let radius = q16(sphere.radius);
-    // The shift that leaves the radius 30 bits: a point of the sphere then has no more either.
-    let shift = radius.leading_zeros() - 2;
+    // The shift that leaves the radius 30 bits: a point of the sphere then has no more either. From 16,384 on it has 31.
+    let shift = radius.leading_zeros().saturating_sub(2);
     let reciprocal = (1i64 << 60) / (i64::from(radius) << shift);
     let (reflectance, material) = match sphere.material {
         Material::Diffuse(colour) => (colour, MaterialRecord::Diffuse),
@@ -129,7 +151,10 @@ fn record(sphere: &Sphere) -> SphereRecord {
         square: i64::from(radius) * i64::from(radius),
         reciprocal: reciprocal.min(i32::MAX.into()) as i32,
         shift: shift as u8,
-        emission: sphere.emission.map(|e| q16(e) as u32),
+        two_sided: false,
+        emission: sphere
+            .emission
+            .map(|e| (e * 2f64.powi(exponent + 16)).round() as u32),
         reflectance: reflectance.map(q0_32),
         survivor: survivor.map(q0_32),
         survival: (survival * f64::from(1 << 30)).round() as i32,
@@ -155,19 +180,6 @@ fn q16(value: f64) -> i32 {
 /// To 0:32, where all ones stand for 1: the conversion saturates there.
 fn q0_32(value: f64) -> u32 {
     (value * 4_294_967_296.0).round() as u32
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
-}
-
-fn normalised(v: [f64; 3]) -> [f64; 3] {
-    let length = v.iter().map(|c| c * c).sum::<f64>().sqrt();
-    v.map(|c| c / length)
 }
 
 #[cfg(test)]
@@ -200,10 +212,22 @@ mod tests {
 
     #[test]
     fn radii_keep_thirty_bits_in_their_reciprocals() {
-        for radius in [1.0 / 256.0, 0.3, 1.0, 16.5, 600.0, 10_000.0, 16_383.0] {
+        for radius in [
+            1.0 / 256.0,
+            0.3,
+            1.0,
+            16.5,
+            600.0,
+            10_000.0,
+            16_383.0,
+            16_384.0,
+            20_000.0,
+            20_000.0 + 1.0 / 65536.0,
+            32_767.0,
+        ] {
             let mut sphere = cornell().spheres[0].clone();
             sphere.radius = radius;
-            let record = record(&sphere);
+            let record = record(&sphere, 0);
             let found = f64::from(record.reciprocal) * 2f64.powi(i32::from(record.shift) - 44);
             let exact = 65536.0 / f64::from(record.radius);
             assert!(

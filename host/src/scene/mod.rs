@@ -5,10 +5,13 @@
 //! it into the bytes a core reads is the scene compiler's business.
 
 mod compile;
+mod light;
 mod limits;
 mod parse;
+mod start;
 mod unit_size;
 mod validate;
+mod vector;
 
 use std::path::{Path, PathBuf};
 
@@ -181,20 +184,20 @@ impl Scene {
     /// [`Scene::load`] has checked it for the default shape of 4:3; a wider picture looks further to the sides.
     pub fn check_frame(&self, width: u16, height: u16) -> Result<(), SceneError> {
         let spheres = self.spheres.iter().map(|sphere| (sphere, ()));
-        let Some((place, blocked)) = validate::first_blocked_ray(&self.camera, spheres, width, height) else {
+        let Some((rays, blocked)) = validate::first_blocked_ray(&self.camera, spheres, width, height) else {
             return Ok(());
         };
         let cause = match blocked {
             validate::Blocked::Inside(sphere, ()) => {
                 let name = &sphere.name;
                 format!(
-                    "the {place} ray starts inside the solid of sphere \"{name}\"; choose a shape nearer to 4:3, or give the camera a `plane_width`"
+                    "{rays} starts inside the solid of sphere \"{name}\"; choose a shape nearer to 4:3, or give the camera a `plane_width`"
                 )
             }
             validate::Blocked::TooFar(sphere, ()) => {
                 let name = &sphere.name;
                 format!(
-                    "the {place} ray starts beyond the tracer's reach of sphere \"{name}\"; choose a narrower shape, or give the camera a `plane_width`"
+                    "{rays} starts beyond the tracer's reach of sphere \"{name}\"; choose a narrower shape, or give the camera a `plane_width`"
                 )
             }
         };

@@ -384,6 +384,93 @@ fn cornell_of_any_width() -> Scene {
 }
 
 #[test]
+fn balls_and_rooms_that_reach_across_the_start_of_rays() {
+    let near = GOOD.replace("plane_height = 0.5", "plane_height = 1\nnear = 5");
+    // A ball off the middle, the edges and the corners, where rays of a fifth of the picture start.
+    let cut = near.replace(
+        "centre = [0, 0, -5]\nradius = 2",
+        "centre = [1.2, 1.2, 0]\nradius = 0.7",
+    );
+    let scene = Scene::parse("cut.toml", &cut).unwrap();
+    let compiled = compile(&scene, 64, 48);
+    assert!(compiled.needs.two_sided);
+    assert_eq!(compiled.needs.to_string(), "diffuse,twosided");
+    // The same out of the picture, and behind where rays start.
+    for centre in ["[9, 1.2, 0]", "[1.2, 1.2, -8]"] {
+        let free = near.replace(
+            "centre = [0, 0, -5]\nradius = 2",
+            &format!("centre = {centre}\nradius = 0.7"),
+        );
+        assert!(
+            !compile(&Scene::parse("free.toml", &free).unwrap(), 64, 48)
+                .needs
+                .two_sided
+        );
+    }
+    // A room that ends between the middle and the edge, to the left.
+    let second = "[[sphere]]\nname = \"alcove\"\nhollow = true\ncentre = [9, 0, 0]\nradius = 10.8\ndiffuse = [0, 0, 0]\n";
+    let found = messages(&format!("{near}{second}"));
+    assert!(
+        found[0].contains("the left ray starts inside the solid of sphere \"alcove\" (line 19)"),
+        "{found:?}"
+    );
+}
+
+#[test]
+fn light_that_a_core_would_lose() {
+    // Alone, any light will do.
+    for emission in ["1e-6", "1e-30", "4095"] {
+        let text = GOOD.replace("[4, 4, 4]", &format!("[{emission}, 0, {emission}]"));
+        Scene::parse("test.toml", &text).unwrap_or_else(|error| panic!("{error}"));
+    }
+    spoiled_sphere(
+        "emission = [4, 4, 1e-7]",
+        "an emission of 0.0000001 is lost beside",
+    );
+    spoiled_sphere("emission = [4, 4, 1e-31]", "use 0, or at least 1e-30");
+    let found = messages(&GOOD.replace("diffuse = [0.5, 0.5, 0.5]", "diffuse = [0.5, 0.5, 1e-8]"));
+    assert!(found[0].starts_with("test.toml:6:"), "{found:?}");
+    assert!(
+        found[0].contains("a reflectance of 0.00000001 is lost"),
+        "{found:?}"
+    );
+}
+
+/// The lamp with other emission must fail, at the lamp's line.
+fn spoiled_sphere(emission: &str, words: &str) {
+    let found = messages(&GOOD.replace("emission = [4, 4, 4]", emission));
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert!(
+        found[0].starts_with("test.toml:12:") && found[0].contains(words),
+        "{found:?}"
+    );
+}
+
+#[test]
+fn solids_as_large_as_the_reach() {
+    for radius in ["16384", "20000", "20000.00001525879", "21000"] {
+        let centre = format!("[0, 0, {}]", -10.0 - radius.parse::<f64>().unwrap());
+        let text = GOOD.replace("radius = 20\n", "radius = 200\n").replace(
+            "centre = [0, 0, -5]\nradius = 2",
+            &format!("centre = {centre}\nradius = {radius}"),
+        );
+        check_compiled(&Scene::parse("large.toml", &text).unwrap());
+    }
+}
+
+/// What the compiler makes of any accepted scene is what a core can work with.
+fn check_compiled(scene: &Scene) {
+    let compiled = compile(scene, 64, 48);
+    tracer::scene::Scene::<tracer::numbers::Mixed>::decode::<tracer::scene::All>(&compiled.blob).unwrap();
+    for bytes in compiled.blob[tracer::scene::HEADER_BYTES..].chunks(tracer::scene::SPHERE_BYTES) {
+        let record = tracer::scene::SphereRecord::decode(bytes).unwrap();
+        let found = f64::from(record.reciprocal) * 2f64.powi(i32::from(record.shift) - 60);
+        let exact = 1.0 / f64::from(record.radius);
+        assert!((found / exact - 1.0).abs() < 2f64.powi(-28), "{record:?}");
+    }
+}
+
+#[test]
 fn wider_pictures_than_the_scene_allows() {
     let scene = cornell_of_any_width();
     for (width, height) in [
@@ -494,6 +581,7 @@ proptest! {
             }
             let length: f64 = scene.camera.direction.iter().map(|c| c * c).sum();
             prop_assert!((length - 1.0).abs() < 1e-12);
+            check_compiled(&scene);
         }
     }
 }

@@ -10,7 +10,7 @@ use tracer::unit::{Plan, Termination, walk};
 use super::{Scene, compile};
 
 /// Samples per pixel in one unit, unless the whole picture has fewer or they take too long.
-const USUAL: u16 = 64;
+pub(super) const USUAL: u16 = 64;
 /// The fewest: one for each sub-pixel.
 const FEWEST: u16 = 4;
 /// Tests of a ray against a sphere that a pixel of a unit may cost. With 64 spheres that is 28 rays a sample, with one 186; the

@@ -1,12 +1,16 @@
 //! How the parts of a scene fit together: names, light, extent, and free space in front of the camera.
 
+use super::light::Light;
 use super::parse::{Draft, Source};
+use super::start::StartPatch;
+use super::vector::{cross, length, sub};
 use super::{Camera, Material, REACH, Sphere};
 
 /// Notes every fault of `draft`.
 pub(super) fn validate(draft: &Draft, source: &mut Source<'_>) {
     names_are_unique(draft, source);
     something_shines(draft, source);
+    light_fits(draft, source);
     distances_fit(draft, source);
     directions_differ(draft, source);
     if source.is_clean() {
@@ -39,6 +43,17 @@ fn something_shines(draft: &Draft, source: &mut Source<'_>) {
         source.fault(
             first.at,
             "nothing shines, the picture would be black; give one sphere `emission = [r, g, b]`",
+        );
+    }
+}
+
+fn light_fits(draft: &Draft, source: &mut Source<'_>) {
+    let light = Light::of(draft.spheres.iter().map(|placed| &placed.sphere));
+    if let Some(faint) = light.too_faint() {
+        let placed = &draft.spheres[faint.sphere];
+        source.fault(
+            placed.at,
+            format!("sphere \"{}\": {}", placed.sphere.name, faint.cause),
         );
     }
 }
@@ -102,15 +117,15 @@ fn camera_is_in_free_space(draft: &Draft, source: &mut Source<'_>) {
     // What else a scene is seen at, `check_frame` checks: here it is the default picture.
     let spheres = draft.spheres.iter().map(|placed| (&placed.sphere, placed.at));
     let trouble = first_blocked_ray(&draft.camera, spheres, 256, 192);
-    if let Some((place, blocked)) = trouble {
+    if let Some((rays, blocked)) = trouble {
         let message = match blocked {
             Blocked::Inside(sphere, at) => format!(
-                "the {place} ray starts inside the solid of sphere \"{}\" (line {}); move the camera or change `near`",
+                "{rays} starts inside the solid of sphere \"{}\" (line {}); move the camera or change `near`",
                 sphere.name,
                 source.line(at)
             ),
             Blocked::TooFar(sphere, at) => format!(
-                "the {place} ray starts too far from the centre of sphere \"{}\" (line {}), beyond the tracer's reach ({}); move the camera nearer",
+                "{rays} starts too far from the centre of sphere \"{}\" (line {}), beyond the tracer's reach ({}); move the camera nearer",
                 sphere.name,
                 source.line(at),
                 reach(sphere)
@@ -120,79 +135,52 @@ fn camera_is_in_free_space(draft: &Draft, source: &mut Source<'_>) {
     }
 }
 
-/// Why a ray cannot start where it does, with the sphere in question and whatever its caller knows it by.
+/// Why rays cannot start where they do, with the sphere in question and whatever its caller knows it by.
 pub(super) enum Blocked<'s, T> {
     Inside(&'s Sphere, T),
     TooFar(&'s Sphere, T),
 }
 
-/// Looks at the middle, the corners and the edges of a picture of this shape.
+/// The first sphere that rays of a picture of this shape cannot start where they do for, and which rays these are.
+///
+/// What the tent filter adds to a picture, a quarter of a pixel, is left out: the few rays that start there in a wall are too
+/// few to be measured.
 pub(super) fn first_blocked_ray<'s, T>(
     camera: &Camera,
-    spheres: impl Iterator<Item = (&'s Sphere, T)> + Clone,
+    mut spheres: impl Iterator<Item = (&'s Sphere, T)>,
     width: u16,
     height: u16,
-) -> Option<(&'static str, Blocked<'s, T>)> {
-    start_points(camera, width, height)
-        .into_iter()
-        .find_map(|(place, start)| {
-            spheres.clone().find_map(|(sphere, tag)| {
-                let distance = length(sub(start, sphere.centre));
-                if distance >= reach(sphere) {
-                    Some((place, Blocked::TooFar(sphere, tag)))
-                } else if (distance < sphere.radius) != sphere.hollow {
-                    Some((place, Blocked::Inside(sphere, tag)))
-                } else {
-                    None
-                }
-            })
-        })
-}
-
-/// Where the rays in the middle, at the corners and halfway between these start: along an edge, a ray through its middle
-/// is least oblique and so starts furthest out. What the tent filter adds, a quarter of a pixel, is left out: the few rays
-/// that start there in a wall are too few to be measured.
-fn start_points(camera: &Camera, width: u16, height: u16) -> [(&'static str, [f64; 3]); 9] {
-    let aspect = f64::from(width) / f64::from(height);
-    let right = normalised(cross(camera.direction, camera.up));
-    let up = cross(right, camera.direction);
-    let plane_height = camera.height_for(width, height);
-    let (half_width, half_height) = (plane_height * aspect / 2.0, plane_height / 2.0);
-    [
-        ("middle", 0.0, 0.0),
-        ("top", 0.0, 1.0),
-        ("bottom", 0.0, -1.0),
-        ("left", -1.0, 0.0),
-        ("right", 1.0, 0.0),
-        ("top left", -1.0, 1.0),
-        ("top right", 1.0, 1.0),
-        ("bottom left", -1.0, -1.0),
-        ("bottom right", 1.0, -1.0),
-    ]
-    .map(|(name, x, y)| {
-        let (across, upwards) = (x * half_width, y * half_height);
-        let ray = normalised([0, 1, 2].map(|i| camera.direction[i] + across * right[i] + upwards * up[i]));
-        (name, [0, 1, 2].map(|i| camera.position[i] + camera.near * ray[i]))
+) -> Option<(String, Blocked<'s, T>)> {
+    let patch = StartPatch::new(camera, width, height, 0.0);
+    spheres.find_map(|(sphere, tag)| {
+        let [(nearest, _), (furthest, place)] = patch.nearest_and_furthest(sphere.centre);
+        let the_furthest = format!("the {place} ray");
+        // In part of an opaque ball rays may start: it is cut open. Nobody wants to see nothing but its inside.
+        let (lost, within) = if sphere.hollow {
+            (furthest >= sphere.radius, the_furthest.clone())
+        } else {
+            let crossed = nearest < sphere.radius && sphere.radius >= REACH;
+            (
+                is_opaque(sphere) && (furthest < sphere.radius || crossed),
+                "every ray".to_owned(),
+            )
+        };
+        if furthest >= reach(sphere) {
+            Some((the_furthest, Blocked::TooFar(sphere, tag)))
+        } else {
+            lost.then_some((within, Blocked::Inside(sphere, tag)))
+        }
     })
 }
 
-fn sub(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+/// Whether camera rays start within an opaque solid, or so near that rounding may put them there.
+pub(super) fn is_cut_open(sphere: &Sphere, patch: &StartPatch) -> bool {
+    /// Some units of the last place of 16:16.
+    const ROUNDING: f64 = 1.0 / 8192.0;
+    let [(nearest, _), _] = patch.nearest_and_furthest(sphere.centre);
+    !sphere.hollow && is_opaque(sphere) && nearest < sphere.radius + ROUNDING
 }
 
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
-}
-
-fn length(v: [f64; 3]) -> f64 {
-    v.iter().map(|c| c * c).sum::<f64>().sqrt()
-}
-
-fn normalised(v: [f64; 3]) -> [f64; 3] {
-    let length = length(v);
-    v.map(|c| c / length)
+fn is_opaque(sphere: &Sphere) -> bool {
+    !matches!(sphere.material, Material::Glass { .. })
 }

@@ -28,6 +28,7 @@ fn image(board: Board, profile: Arithmetic, log: Option<Level>) -> Image {
         diffuse: true,
         mirror: true,
         glass: true,
+        two_sided: false,
     };
     let recipe = Recipe {
         profile,

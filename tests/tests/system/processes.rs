@@ -151,6 +151,7 @@ fn the_collector_takes_cores_that_are_started_elsewhere() {
         diffuse: true,
         mirror: true,
         glass: true,
+        two_sided: false,
     };
     let recipe = Recipe {
         profile: Arithmetic::Precise,

@@ -46,6 +46,8 @@ impl Numbers for Mixed {
     type Reciprocal = Reciprocal;
 
     const NOTHING: I16F16 = I16F16::ZERO;
+    /// 3 ulp: 1 of the projection's cut, 1/2 of the root, and 0.87 where the three components are rounded.
+    const GRAZING: I16F16 = I16F16::from_bits(3);
     /// 2^16 / 3, twice the longest radius.
     const FAR: I16F16 = I16F16::from_bits(0x5555_5555);
     const ONE: I2F30 = I2F30::ONE;

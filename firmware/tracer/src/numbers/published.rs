@@ -32,6 +32,7 @@ impl Numbers for Published {
     type Reciprocal = I16F16;
 
     const NOTHING: I16F16 = I16F16::ZERO;
+    const GRAZING: I16F16 = I16F16::ZERO;
     const FAR: I16F16 = I16F16::MAX;
     const ONE: I16F16 = ONE;
     const ZERO: I16F16 = I16F16::ZERO;

@@ -16,7 +16,7 @@
 //! | 1 | radius, 16:16 |
 //! | 2 | radius squared, 32:32 |
 //! | 1 | reciprocal: 2^60 / (radius << shift) |
-//! | 1 | shift (low byte), material (second byte) |
+//! | 1 | shift (low byte), material (second byte), whether two-sided (third byte) |
 //! | 3 | emission, 16:16 |
 //! | 3 | reflectance, 0:32 (all ones: 1) |
 //! | 3 | reflectance / survival, 0:32 |
@@ -41,7 +41,7 @@ pub enum BlobError {
     BadMagic,
     /// It counts more spheres than there can be, or than it holds.
     BadCounts,
-    /// A material has no such number.
+    /// A material has no such number, or is neither one- nor two-sided.
     BadMaterial,
     /// It needs a material that this image was built without.
     NotInThisImage,
@@ -90,6 +90,8 @@ pub struct SphereRecord {
     pub reciprocal: i32,
     /// See `reciprocal`.
     pub shift: u8,
+    /// Whether camera rays may start within this solid.
+    pub two_sided: bool,
     /// Emission, 16:16.
     pub emission: [u32; 3],
     /// Reflectance, 0:32 (all ones: 1).
@@ -187,7 +189,7 @@ impl SphereRecord {
         words[4] = self.square as u32;
         words[5] = (self.square >> 32) as u32;
         words[6] = self.reciprocal as u32;
-        words[7] = u32::from(self.shift) | number << 8;
+        words[7] = u32::from(self.shift) | number << 8 | u32::from(self.two_sided) << 16;
         words[8..11].copy_from_slice(&self.emission);
         words[11..14].copy_from_slice(&self.reflectance);
         words[14..17].copy_from_slice(&self.survivor);
@@ -210,7 +212,7 @@ impl SphereRecord {
         let (emission, reflectance, survivor) = (words.three(), words.three(), words.three());
         let survival = words.next() as i32;
         let [index, inverse, normal_reflectance] = words.signed();
-        let material = match packed >> 8 {
+        let material = match packed >> 8 & 0xff {
             0 => MaterialRecord::Diffuse,
             1 => MaterialRecord::Mirror,
             2 => MaterialRecord::Glass {
@@ -220,6 +222,11 @@ impl SphereRecord {
             },
             _ => return Err(BlobError::BadMaterial),
         };
+        let two_sided = match packed >> 16 {
+            0 => false,
+            1 => true,
+            _ => return Err(BlobError::BadMaterial),
+        };
         let shift = packed as u8 & 31;
         Ok(Self {
             centre,
@@ -227,6 +234,7 @@ impl SphereRecord {
             square,
             reciprocal,
             shift,
+            two_sided,
             emission,
             reflectance,
             survivor,

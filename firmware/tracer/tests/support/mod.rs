@@ -25,6 +25,7 @@ pub(crate) fn sphere(
         square: i64::from(bits) * i64::from(bits),
         reciprocal: ((1i64 << 60) / (i64::from(bits) << shift)).min(i32::MAX.into()) as i32,
         shift: shift as u8,
+        two_sided: false,
         emission: [0; 3],
         reflectance: [(reflectance * 4_294_967_296.0) as u32; 3],
         survivor: [u32::MAX; 3],

@@ -1,0 +1,113 @@
+//! Kinds of scene that once came out wrong without a word, each at its hardest.
+//!
+//! Seeds are fixed, so each of these has one outcome. The bounds are what sampling noise allows, not what was found.
+
+use host::compare::{Comparison, compare};
+use host::direct;
+use host::reference::{self, Job};
+use host::scene::{Scene, compile};
+use tracer::numbers::Mixed;
+use tracer::profile::Precise;
+use tracer::scene::All;
+use tracer::unit::{RUN, render};
+use whole_system::{estimate, plan, repository};
+use wire::SUM_MAX;
+
+fn compared(scene: &Scene, width: u16, height: u16, spp: u32) -> Comparison {
+    let job = Job {
+        width,
+        height,
+        spp,
+        termination: reference::Termination::Roulette,
+        seed: 1,
+    };
+    let reference = reference::render(scene, &job, |_| ());
+    let (precise, _) = estimate::<Precise>(scene, &plan::<Precise>(width, height, spp));
+    compare(&precise, &reference).unwrap()
+}
+
+fn no_tile_is_off(name: &str, found: &Comparison) {
+    let (worst, bound) = (found.tiles.max_z(), found.tiles.threshold_z);
+    println!("{name}: largest z {worst:.2} of {bound:.2}");
+    assert_eq!(found.tiles.failed().count(), 0, "{name}: {worst} beyond {bound}");
+}
+
+/// A sphere around the origin that emits 1 and reflects `reflectance` of its own `material`.
+fn room(emission: f64, material: &str, reflectance: f64) -> Scene {
+    let text = format!(
+        "format = 1\n[camera]\nposition = [0, 0, 0]\ndirection = [0, 0, -1]\nplane_height = 1\n\
+         [[sphere]]\nname = \"room\"\nhollow = true\ncentre = [0, 0, 0]\nradius = 10\n\
+         emission = [{emission:e}, {emission:e}, {emission:e}]\n{material} = [{reflectance}, {reflectance}, {reflectance}]\n"
+    );
+    Scene::parse("room.toml", &text).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Balls that are cut open where camera rays start are seen from inside.
+#[test]
+fn balls_that_rays_start_in() {
+    let scene = Scene::load(&repository("tests/scenes/cut-open.toml")).unwrap();
+    let compiled = compile(&scene, 64, 48);
+    assert!(compiled.needs.two_sided);
+    no_tile_is_off("cut open", &compared(&scene, 64, 48, 256));
+    // One-sided, the balls that are cut are not seen: the test can fail.
+    let mut blind = scene.clone();
+    blind.spheres.retain(|sphere| sphere.name != "black");
+    let (seen, _) = estimate::<Precise>(&scene, &plan::<Precise>(64, 48, 16));
+    let (unseen, _) = estimate::<Precise>(&blind, &plan::<Precise>(64, 48, 16));
+    assert!(compare(&unseen, &seen).unwrap().tiles.failed().count() > 0);
+}
+
+/// A furnace is as bright as its lamp times a constant, whatever the unit of light.
+#[test]
+fn light_has_no_unit() {
+    let mean = |emission: f64| {
+        let found = compared(&room(emission, "diffuse", 0.5), 16, 12, 64);
+        no_tile_is_off(&format!("emission {emission:e}"), &found);
+        found.mean[0] / emission
+    };
+    let one = mean(1.0);
+    for emission in [1e-30, 1e-6, 2e-5, 1e-4, 0.01, 4095.0] {
+        let ratio = mean(emission) / one - 1.0;
+        // The paths are the same; emission is rounded by 2^-14 of itself at most, sums by less.
+        assert!(ratio.abs() < 2f64.powi(-14), "{emission:e}: {ratio:e}");
+    }
+}
+
+/// Paths of a thousand bright mirrors: what they bring together fits a packet.
+#[test]
+fn sums_of_bright_mirrors_fit() {
+    for emission in [200.0, 4095.0] {
+        let scene = room(emission, "mirror", 0.999);
+        let compiled = compile(&scene, 8, 8);
+        let decoded = tracer::scene::Scene::<Mixed>::decode::<All>(&compiled.blob).unwrap();
+        let plan = plan::<Precise>(8, 8, 64);
+        for id in 0..plan.units().unwrap() {
+            let mut sums = [[0; 3]; RUN];
+            render::<Precise, All>(&decoded, &plan, id, &mut sums);
+            let largest = sums.as_flattened().iter().max().unwrap();
+            assert!(*largest <= SUM_MAX, "{emission}: {largest}");
+        }
+        // A sample is emission / (1 - 0.999) in the mean and about as much off; the mean of 4,096 is 1/64 of that off.
+        let film = direct::film::<Precise>(&compiled, &plan).unwrap();
+        let mean = film.picture().mean().unwrap()[0] / emission / 1000.0;
+        assert!((mean - 1.0).abs() < 5.0 / 64.0, "{emission}: {mean}");
+    }
+}
+
+/// A glass ball alone under a white sky is white but for what it absorbs, to its very edge.
+#[test]
+fn glass_balls_of_any_radius() {
+    for radius in [1.0 / 256.0, 0.01, 0.1, 0.5, 1.0, 10.0, 100.0, 2000.0] {
+        let text = format!(
+            "format = 1\n[camera]\nposition = [0, 0, {}]\ndirection = [0, 0, -1]\nplane_height = 0.6\n\
+             [[sphere]]\nname = \"sky\"\nhollow = true\ncentre = [0, 0, 0]\nradius = {}\n\
+             emission = [1, 1, 1]\ndiffuse = [0, 0, 0]\n\
+             [[sphere]]\nname = \"ball\"\ncentre = [0, 0, 0]\nradius = {radius}\n\
+             glass = [0.999, 0.999, 0.999]\nindex = 1.5\n",
+            4.0 * radius,
+            5.0 * radius
+        );
+        let scene = Scene::parse("ring.toml", &text).unwrap();
+        no_tile_is_off(&format!("radius {radius}"), &compared(&scene, 64, 64, 64));
+    }
+}
