@@ -24,9 +24,6 @@ pub struct Estimate {
     pub spp: Option<u32>,
 }
 
-/// Display gamma.
-const GAMMA: f64 = 2.2;
-
 /// The colour of a pixel without samples in a PNG: a magenta that no lit surface has.
 const MISSING: [u8; 3] = [255, 0, 255];
 
@@ -71,7 +68,7 @@ impl Picture {
         (count > 0).then(|| sum.map(|component| component / count as f64))
     }
 
-    /// How the picture looks on a display: 8 bits a channel, gamma 2.2, clamped; a missing pixel is magenta.
+    /// How the picture looks on a display: 8 bits a channel in sRGB, clamped; a missing pixel is magenta.
     pub fn display(&self) -> Vec<u8> {
         self.pixels
             .iter()
@@ -90,9 +87,12 @@ impl Picture {
     }
 }
 
-/// Radiance on a display of gamma 2.2, 1 being white.
+/// Radiance on a display, 1 being white: the transfer function of sRGB (IEC 61966-2-1).
 pub fn displayed(radiance: f64) -> f64 {
-    radiance.clamp(0.0, 1.0).powf(1.0 / GAMMA)
+    match radiance.clamp(0.0, 1.0) {
+        dark if dark <= 0.0031308 => 12.92 * dark,
+        bright => 1.055 * bright.powf(1.0 / 2.4) - 0.055,
+    }
 }
 
 fn to_8_bits(radiance: f64) -> u8 {
@@ -115,8 +115,8 @@ mod tests {
             Some([f64::NAN; 3]),
         ];
         let picture = Picture::new(2, 2, pixels);
-        // 0.5 ^ (1 / 2.2) = 0.7297, 0.1 ^ (1 / 2.2) = 0.3511
-        assert_eq!(picture.display(), [0, 255, 255, 255, 0, 255, 0, 186, 90, 0, 0, 0]);
+        // 1.055 * 0.5 ^ (1 / 2.4) - 0.055 = 0.7354, 1.055 * 0.1 ^ (1 / 2.4) - 0.055 = 0.3492
+        assert_eq!(picture.display(), [0, 255, 255, 255, 0, 255, 0, 188, 89, 0, 0, 0]);
     }
 
     #[test]
@@ -126,16 +126,68 @@ mod tests {
         assert_eq!(Picture::new(1, 1, vec![None]).mean(), None);
     }
 
+    /// Radiance of what a PNG file of sRGB shows as `level`, by the standard's own formula in this direction.
+    fn radiance_of(level: f64) -> f64 {
+        match level / 255.0 {
+            dark if dark <= 0.04045 => dark / 12.92,
+            bright => ((bright + 0.055) / 1.055).powf(2.4),
+        }
+    }
+
+    /// The file's chunks before its pixels, by name.
+    fn chunks(mut bytes: &[u8]) -> Vec<(String, Vec<u8>)> {
+        bytes = bytes.strip_prefix(b"\x89PNG\r\n\x1a\n").expect("a PNG file");
+        let mut chunks = Vec::new();
+        loop {
+            let (length, rest) = bytes.split_first_chunk().expect("a length");
+            let (name, rest) = rest.split_at(4);
+            if name == b"IDAT" {
+                return chunks;
+            }
+            let (data, rest) = rest.split_at(u32::from_be_bytes(*length) as usize);
+            chunks.push((String::from_utf8(name.to_vec()).expect("a name"), data.to_vec()));
+            bytes = &rest[4..]; // The checksum is the decoder's business.
+        }
+    }
+
+    #[test]
+    fn every_level_of_the_file_is_the_radiance_by_srgb_as_the_file_says() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("image.png");
+        // The level itself, and how far from it a radiance still has it: as near to half a level as 1e-4 of one.
+        let row = |level: f64| [level, level - 0.4999, level + 0.4999].map(radiance_of);
+        let pixels: Vec<_> = (0..=255).map(|level| Some(row(level.into()))).collect();
+        Picture::new(256, 1, pixels).write_png(&path).unwrap();
+
+        let found = chunks(&std::fs::read(&path).unwrap());
+        let names: Vec<&str> = found.iter().map(|(name, _)| name.as_str()).collect();
+        assert_eq!(names, ["IHDR", "sRGB", "gAMA", "cHRM"]);
+        assert_eq!(found[1].1, [1], "relative colorimetric");
+        assert_eq!(found[2].1, 45455u32.to_be_bytes());
+        let chromaticities = [31270u32, 32900, 64000, 33000, 30000, 60000, 15000, 6000];
+        assert_eq!(found[3].1, chromaticities.map(u32::to_be_bytes).concat());
+
+        let (_, decoded) = decode(&path);
+        for (level, shown) in (0..=255).zip(decoded.chunks_exact(3)) {
+            assert_eq!(shown, [level; 3]);
+        }
+    }
+
+    fn decode(path: &Path) -> (png::OutputInfo, Vec<u8>) {
+        let file = BufReader::new(File::open(path).unwrap());
+        let mut decoder = png::Decoder::new(file).read_info().unwrap();
+        let mut pixels = vec![0; decoder.output_buffer_size().unwrap()];
+        let frame = decoder.next_frame(&mut pixels).unwrap();
+        (frame, pixels)
+    }
+
     #[test]
     fn png_round_trip() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("image.png");
         let picture = Picture::new(2, 1, vec![Some([0.25, 0.5, 0.75]), None]);
         picture.write_png(&path).unwrap();
-        let file = BufReader::new(File::open(path).unwrap());
-        let mut decoder = png::Decoder::new(file).read_info().unwrap();
-        let mut pixels = vec![0; decoder.output_buffer_size().unwrap()];
-        let frame = decoder.next_frame(&mut pixels).unwrap();
+        let (frame, pixels) = decode(&path);
         assert_eq!(
             (frame.width, frame.height, frame.color_type, frame.bit_depth),
             (2, 1, png::ColorType::Rgb, png::BitDepth::Eight)

@@ -40,7 +40,7 @@ pub struct Comparison {
     pub squared_error: SquaredError,
     /// The largest difference of any channel of any pixel, noise and all.
     pub max_abs: f64,
-    /// Peak signal to noise on the display: both pictures clamped to [0, 1] with gamma 2.2 but not quantised, peak 1,
+    /// Peak signal to noise on the display: both pictures clamped to [0, 1] and in sRGB, but not quantised, peak 1,
     /// noise and all, for it shows too. `None` if they do not differ.
     pub psnr_db: Option<f64>,
     /// Tile by tile.

@@ -275,12 +275,9 @@ fn psnr_is_over_what_a_display_shows() {
     // Both are white on a display, whatever their radiance.
     let comparison = compare(&exact(|_| [12.0; 3]), &exact(|_| [1.5; 3])).unwrap();
     assert_eq!(comparison.psnr_db, None);
-    // 0.5^2.2 and 0.6^2.2 display as 0.5 and 0.6: an error of 0.1 is 20 dB.
-    let comparison = compare(
-        &exact(|_| [0.6f64.powf(2.2); 3]),
-        &exact(|_| [0.5f64.powf(2.2); 3]),
-    )
-    .unwrap();
+    // Radiances that a display shows as 0.5 and 0.6: an error of 0.1 is 20 dB.
+    let radiance = |shown: f64| ((shown + 0.055) / 1.055).powf(2.4);
+    let comparison = compare(&exact(|_| [radiance(0.6); 3]), &exact(|_| [radiance(0.5); 3])).unwrap();
     assert!((comparison.psnr_db.unwrap() - 20.0).abs() < 1e-9);
 }
 
