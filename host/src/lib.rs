@@ -36,3 +36,4 @@ pub mod scene;
 pub mod session;
 pub mod setup;
 pub mod symbols;
+pub mod workspace;

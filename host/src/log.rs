@@ -9,7 +9,7 @@ use std::{fmt, fs, io};
 
 use defmt_decoder::{Frame, Table};
 
-use crate::firmware;
+use crate::workspace;
 
 /// How grave a line is; a core with a log says all that is at least as grave as the level it was built for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, clap::ValueEnum)]
@@ -99,7 +99,7 @@ impl Dictionary {
         let table = table.ok_or_else(|| LogError::Without { path: path() })?;
         let locations = table.get_locations(&bytes).map_err(|cause| unusable(&cause))?;
         let place = |(frame, location): (u64, defmt_decoder::Location)| {
-            let file = location.file.strip_prefix(firmware::workspace());
+            let file = workspace::source(&location.file);
             let file = file.unwrap_or(&location.file).display();
             (frame, format!("{file}:{}", location.line))
         };

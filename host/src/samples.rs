@@ -119,7 +119,7 @@ impl Series {
     fn options(&self, board: Board, profile: Arithmetic, end: Termination, out: &Path) -> RenderOptions {
         RenderOptions {
             picture: PictureOptions {
-                scene: self.scene.clone(),
+                scene: Some(self.scene.clone()),
                 size: self.size,
                 spp: self.spp,
                 cores: self.cores,

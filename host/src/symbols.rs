@@ -8,7 +8,7 @@ use std::path::Path;
 use addr2line::Loader;
 use wire::LastWords;
 
-use crate::firmware::workspace;
+use crate::workspace;
 
 /// How the last words of a core that panics begin; file and line follow.
 const PANIC: &str = "panic at ";
@@ -115,7 +115,7 @@ fn without_arguments(name: &str) -> String {
 
 /// A source file as people name it: from the workspace's root, from its crate, or from the standard library's.
 fn shortened(file: &str) -> &str {
-    if let Ok(ours) = Path::new(file).strip_prefix(workspace()) {
+    if let Some(ours) = workspace::source(Path::new(file)) {
         return ours.to_str().unwrap_or(file);
     }
     if let Some((_, of_registry)) = file.split_once("/registry/src/")
@@ -135,7 +135,7 @@ mod tests {
 
     #[test]
     fn files_are_named_from_where_people_know_them() {
-        let ours = workspace().join("firmware/node/src/worker.rs");
+        let ours = workspace::file("firmware/node/src/worker.rs").expect("tests run in the checkout");
         let ours = ours.to_str().expect("UTF-8");
         for (file, expected) in [
             (ours, "firmware/node/src/worker.rs"),

@@ -1,6 +1,6 @@
 //! What the whole-system tests share: the standard scene, its picture without a fleet in between, and the programs.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::{Command, Output, Stdio};
 use std::sync::OnceLock;
 
@@ -12,12 +12,17 @@ use host::log::Level;
 use host::picture::Estimate;
 use host::scene::{Scene, compile};
 use host::setup::{self, Install, Toolchain, Wanted};
+use host::workspace;
 use tracer::profile::Profile;
 use tracer::unit::{Plan, Termination};
 
 /// A file of the repository.
+///
+/// # Panics
+/// If the test does not run in it.
 pub fn repository(path: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(path)
+    let root = workspace::root().unwrap_or_else(|error| panic!("{error}"));
+    root.join(path)
 }
 
 /// The nine-sphere Cornell box.
@@ -124,12 +129,10 @@ pub fn program(name: &str) -> PathBuf {
             "--package",
             "host",
         ]);
-        let status = cargo
-            .current_dir(firmware::workspace())
-            .status()
-            .expect("cargo starts");
+        let status = cargo.current_dir(repository(".")).status().expect("cargo starts");
         assert!(status.success(), "the programs do not build");
-        firmware::target_folder()
+        let firmware = firmware::target_folder().expect("tests run in the checkout");
+        firmware
             .parent()
             .expect("it is in the target folder")
             .join("release")
@@ -140,7 +143,7 @@ pub fn program(name: &str) -> PathBuf {
 /// A command of the project's; what it says is kept.
 pub fn xtask(arguments: &[&str]) -> Command {
     let mut command = Command::new(program("xtask"));
-    command.args(arguments).current_dir(firmware::workspace());
+    command.args(arguments).current_dir(repository("."));
     command
         .stdin(Stdio::null())
         .stdout(Stdio::piped())

@@ -9,6 +9,7 @@ use host::board::{Board, DTCM_BUDGET, ITCM_BUDGET};
 use host::firmware::{self, ImageSize, Recipe};
 use host::scene::{Scene, compile};
 use host::setup::{self, Toolchain, Wanted};
+use host::workspace;
 use serde::Serialize;
 
 use crate::SetUp;
@@ -16,9 +17,8 @@ use crate::SetUp;
 /// Arguments of `size`.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// The scene that the images are for
-    #[arg(default_value = "scenes/cornell.toml")]
-    scene: PathBuf,
+    /// The scene that the images are for [default: scenes/cornell.toml of the checkout]
+    scene: Option<PathBuf>,
     /// Write the table as JSON, too
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -43,7 +43,7 @@ impl Row {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
-    let scene = Scene::load(&arguments.scene)?;
+    let scene = Scene::load(&workspace::scene(arguments.scene.as_deref())?)?;
     let tools = setup::ensure(
         Wanted {
             firmware: true,

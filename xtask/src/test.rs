@@ -13,6 +13,7 @@ use host::firmware::{self, Recipe};
 use host::log::Level;
 use host::scene::{Scene, compile};
 use host::setup::{self, Toolchain, Wanted};
+use host::workspace::{self, NoWorkspace};
 
 use crate::{SetUp, size, verify};
 
@@ -38,7 +39,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
         Ok(setup::ensure(wanted, arguments.set_up.install())?)
     })?;
     let toolchain = tools.firmware.context("set-up gave no compiler")?;
-    let scene = Scene::load(&firmware::workspace().join("scenes/cornell.toml"))?;
+    let scene = Scene::load(&workspace::scene(None)?)?;
     let rows = thread::scope(|scope| {
         // Much of what a compiler does takes one processor: the host's and the firmware's work side by side, each in a target
         // folder of its own.
@@ -62,10 +63,10 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
             "--",
             // Tests on the cores report one by one, and others give their figures.
             "--show-output",
-        ]))
+        ])?)
     })?;
     step("documentation", || {
-        let mut command = cargo(&["doc", "--release", "--no-deps"]);
+        let mut command = cargo(&["doc", "--release", "--no-deps"])?;
         command.env("RUSTDOCFLAGS", "--deny warnings");
         succeed(command)
     })?;
@@ -74,7 +75,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
 }
 
 fn host_steps() -> anyhow::Result<()> {
-    step("format", || succeed(cargo(&["fmt", "--all", "--check"])))?;
+    step("format", || succeed(cargo(&["fmt", "--all", "--check"])?))?;
     step("lints", || {
         // As a release build, whose procedural macros and build scripts the tests need anyway.
         succeed(cargo(&[
@@ -84,7 +85,7 @@ fn host_steps() -> anyhow::Result<()> {
             "--",
             "--deny",
             "warnings",
-        ]))
+        ])?)
     })?;
     step("fixedmath as a package", || {
         succeed(cargo(&[
@@ -94,7 +95,7 @@ fn host_steps() -> anyhow::Result<()> {
             "--allow-dirty",
             "--package",
             "fixedmath",
-        ]))
+        ])?)
     })?;
     // With overflow checks and debug assertions, where arithmetic could wrap or panic in one build and not in the other.
     step("tests, checked build", || {
@@ -109,7 +110,7 @@ fn host_steps() -> anyhow::Result<()> {
             "wire",
             "--package",
             "node",
-        ]))
+        ])?)
     })?;
     step("tests, release build", || {
         shown(cargo(&[
@@ -127,9 +128,9 @@ fn host_steps() -> anyhow::Result<()> {
             "whole-system",
             "--exclude",
             "xtask",
-        ]))?;
+        ])?)?;
         // Alone, it is tested with the host's library that it was built with: the others' tests need another one.
-        shown(cargo(&["test", "--quiet", "--release", "--package", "xtask"]))
+        shown(cargo(&["test", "--quiet", "--release", "--package", "xtask"])?)
     })?;
     step("arithmetic against the truth", || verify::sampled().map(|_| ()))
 }
@@ -141,7 +142,7 @@ fn firmware_steps(toolchain: &Toolchain, scene: &Scene) -> anyhow::Result<Vec<si
             "build",
             "fixedmath",
             "thumbv6m-none-eabi",
-        ))
+        )?)
     })?;
     step("firmware lints", || lint_firmware(toolchain, scene))?;
     step("firmware", || size::measure(toolchain, scene))
@@ -158,19 +159,19 @@ fn lint_firmware(toolchain: &Toolchain, scene: &Scene) -> anyhow::Result<()> {
             roulette: true,
             log,
         };
-        let mut command = firmware::cargo(toolchain, board, "clippy", &recipe);
+        let mut command = firmware::cargo(toolchain, board, "clippy", &recipe)?;
         command.args(["--lib", "--bins", "--examples", "--", "--deny", "warnings"]);
         succeed(command)?;
     }
     Ok(())
 }
 
-fn cargo(arguments: &[&str]) -> Command {
+fn cargo(arguments: &[&str]) -> Result<Command, NoWorkspace> {
     // The cargo that runs this program, in the toolchain that was chosen for it.
     let program = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let mut command = Command::new(program);
-    command.args(arguments).current_dir(firmware::workspace());
-    command
+    command.args(arguments).current_dir(workspace::root()?);
+    Ok(command)
 }
 
 /// Names a step, does it, and says how long it took.

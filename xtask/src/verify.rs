@@ -49,13 +49,13 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
         op.unwrap_or_default()
     );
     println!("{}", table(&verdicts));
-    let record = Record::load(&Record::path())?;
+    let record = Record::load(&Record::path()?)?;
     if arguments.bless {
         ensure!(
             sources == sources_sha256()?,
             "fixedmath's sources have changed meanwhile, and this is about what they were; try again"
         );
-        record.updated(&verdicts)?.store(&Record::path())?;
+        record.updated(&verdicts)?.store(&Record::path()?)?;
         return Ok(ExitCode::SUCCESS);
     }
     let faults = match depth {

@@ -256,11 +256,12 @@ mod tests {
     use rand_xoshiro::rand_core::{Rng, SeedableRng};
 
     use super::*;
-    use crate::firmware::workspace;
     use crate::reference::{self, Job};
+    use crate::workspace;
 
     fn pictures(width: u16, height: u16, spp: u32) -> Pictures {
-        let scene = Scene::load(&workspace().join("scenes/cornell.toml")).expect("the scene is in order");
+        let scene = workspace::scene(None).expect("tests run in the checkout");
+        let scene = Scene::load(&scene).expect("the scene is in order");
         let job = Job {
             width,
             height,

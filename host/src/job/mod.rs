@@ -32,6 +32,7 @@ use crate::report::{self, Report};
 use crate::scene::{CompiledScene, Scene, SceneError, compile, samples_per_unit};
 use crate::session::{Route, Session};
 use crate::setup::{self, Install, SetupError, Toolchain, Tools, Wanted};
+use crate::workspace::{self, NoWorkspace};
 use options::{Backend, PictureOptions, Reference, RenderOptions};
 
 pub use debug::{DebugOptions, debug};
@@ -40,6 +41,9 @@ pub use trace::{TraceOptions, trace};
 /// Why there is no complete picture.
 #[derive(Debug, thiserror::Error)]
 pub enum JobError {
+    /// There is no default scene, or no place for the results.
+    #[error("{0}, or name a scene and a folder with --out")]
+    NoWorkspace(#[from] NoWorkspace),
     /// The scene is unusable.
     #[error(transparent)]
     Scene(#[from] SceneError),
@@ -163,12 +167,12 @@ impl Origin {
 impl Job {
     /// Checks everything that can be checked at once.
     pub fn new(options: &PictureOptions) -> Result<Self, JobError> {
-        let scene = Scene::load(&options.scene)?;
+        let scene = Scene::load(&workspace::scene(options.scene.as_deref())?)?;
         let (width, height) = (options.size.width, options.size.height);
         scene.check_frame(width, height)?;
         let plan = options.plan(samples_per_unit(&scene, options.spp, options.termination.0));
         plan.units().ok_or(JobError::TooManyUnits)?;
-        let out = options.out(&scene.name);
+        let out = options.out(&scene.name)?;
         check_writable(&out)?;
         let reference = match &options.reference {
             Some(Reference::File(path)) => Some(read_reference(path, (width, height))?),

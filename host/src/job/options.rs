@@ -11,6 +11,7 @@ use wire::boot::PixelOrder;
 use crate::arithmetic::Arithmetic;
 use crate::board::Board;
 use crate::log::Level;
+use crate::workspace::{self, NoWorkspace};
 
 /// A film of this many pixels takes half a gigabyte.
 const MOST_PIXELS: u32 = 1 << 24;
@@ -18,9 +19,8 @@ const MOST_PIXELS: u32 = 1 << 24;
 /// What the picture shall be.
 #[derive(Clone, Debug, clap::Args)]
 pub struct PictureOptions {
-    /// Scene file
-    #[arg(default_value = "scenes/cornell.toml")]
-    pub scene: PathBuf,
+    /// Scene file [default: scenes/cornell.toml of the checkout]
+    pub scene: Option<PathBuf>,
     /// Width and height in pixels
     #[arg(long, value_name = "WxH", default_value = "256x192")]
     pub size: Size,
@@ -51,7 +51,7 @@ pub struct PictureOptions {
     /// Samples per pixel of the computed reference, a multiple of 4
     #[arg(long, value_name = "N", default_value = "512", value_parser = samples_per_pixel, allow_negative_numbers = true)]
     pub reference_spp: u32,
-    /// Folder for the results [default: out/SCENE-PROFILE]
+    /// Folder for the results [default: out/SCENE-PROFILE of the checkout]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
 }
@@ -100,10 +100,9 @@ impl PictureOptions {
     }
 
     /// The folder for the results of the scene of this name.
-    pub fn out(&self, scene: &str) -> PathBuf {
-        self.out
-            .clone()
-            .unwrap_or_else(|| PathBuf::from(format!("out/{scene}-{}", self.profile)))
+    pub fn out(&self, scene: &str) -> Result<PathBuf, NoWorkspace> {
+        let default = || workspace::file(&format!("out/{scene}-{}", self.profile));
+        self.out.clone().map_or_else(default, Ok)
     }
 }
 
@@ -282,7 +281,8 @@ mod tests {
             (picture.cores, picture.profile, picture.pixels),
             (4, Arithmetic::Precise, Pixels::Leased)
         );
-        assert_eq!(picture.out("cornell"), PathBuf::from("out/cornell-precise"));
+        let out = picture.out("cornell").expect("tests run in the checkout");
+        assert!(out.ends_with("out/cornell-precise"), "{}", out.display());
         let plan = picture.plan(64);
         assert_eq!(
             (plan.width, plan.height, plan.spp, plan.samples_per_unit),

@@ -21,7 +21,7 @@ struct Program {
 
 /// A native render of the Cornell box into `out`, unless `more` says otherwise.
 fn options(out: &Path, more: &[&str]) -> RenderOptions {
-    let scene = firmware::workspace().join("scenes/cornell.toml");
+    let scene = workspace::scene(None).expect("tests run in the checkout");
     let mut words = vec![
         "render",
         scene.to_str().expect("UTF-8"),

@@ -164,7 +164,7 @@ pub fn prices(toolchain: &Toolchain, qemu: &Path, board: Board) -> Result<Vec<Ro
 
 /// The list from prices that have been taken.
 pub fn with_errors(measurements: &[Measurement]) -> Result<Vec<Row>, PriceError> {
-    let record = Record::load(&Record::path())?;
+    let record = Record::load(&Record::path().map_err(RecordError::from)?)?;
     let record = if record.is_current()? {
         record
     } else {

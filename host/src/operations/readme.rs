@@ -8,7 +8,7 @@ use super::Row;
 use super::plot::{self, PlotError};
 use super::table::{coverage, figure, grouped, is_on_front};
 use crate::file::{WriteError, write_whole};
-use crate::firmware::workspace;
+use crate::workspace::{self, NoWorkspace};
 
 const START: &str = "<!-- prices -->\n";
 const END: &str = "<!-- /prices -->";
@@ -17,6 +17,9 @@ const COMPILED_BY: &str = "Compiled by rustc ";
 /// Why the README is as it was.
 #[derive(Debug, thiserror::Error)]
 pub enum ReadmeError {
+    /// There is no README around here.
+    #[error(transparent)]
+    NoWorkspace(#[from] NoWorkspace),
     /// It cannot be read.
     #[error("cannot read {}: {cause}", path.display())]
     Read {
@@ -38,11 +41,10 @@ pub enum ReadmeError {
 
 /// Writes the table into the README and the plots beside it.
 pub fn bless(rows: &[Row]) -> Result<(), ReadmeError> {
-    let folder = workspace().join("fixedmath");
-    for name in ["prices.svg", "prices.png"] {
-        plot::write(&folder.join(name), rows)?;
+    for name in ["fixedmath/prices.svg", "fixedmath/prices.png"] {
+        plot::write(&workspace::file(name)?, rows)?;
     }
-    let path = path();
+    let path = path()?;
     let (text, place) = place()?;
     let text = [&text[..place.start], &markdown(rows), &text[place.end..]].concat();
     Ok(write_whole(&path, |writer| writer.write_all(text.as_bytes()))?)
@@ -54,13 +56,13 @@ pub fn printed() -> Result<String, ReadmeError> {
     Ok(text[place].to_owned())
 }
 
-fn path() -> PathBuf {
-    workspace().join("fixedmath/README.md")
+fn path() -> Result<PathBuf, NoWorkspace> {
+    workspace::file("fixedmath/README.md")
 }
 
 /// The README, and where in it the list belongs.
 fn place() -> Result<(String, std::ops::Range<usize>), ReadmeError> {
-    let path = path();
+    let path = path()?;
     let text = fs::read_to_string(&path).map_err(|cause| ReadmeError::Read {
         path: path.clone(),
         cause,

@@ -12,7 +12,7 @@ use sha2::{Digest, Sha256};
 use super::verify::{Figures, Verdict};
 use super::{Entry, maker_name};
 use crate::file::{WriteError, write_whole};
-use crate::firmware::workspace;
+use crate::workspace::{self, NoWorkspace};
 
 /// The truth is a double's worth: figures that differ by less than this share are the same.
 const PRECISION: f64 = 1e-6;
@@ -50,6 +50,9 @@ pub struct Proof {
 /// Why there is no record to compare with.
 #[derive(Debug, thiserror::Error)]
 pub enum RecordError {
+    /// There is nothing around here to have a record of.
+    #[error(transparent)]
+    NoWorkspace(#[from] NoWorkspace),
     /// A file cannot be read.
     #[error("cannot read {}: {cause}", path.display())]
     Read {
@@ -73,8 +76,8 @@ pub enum RecordError {
 
 impl Record {
     /// Where it is kept.
-    pub fn path() -> PathBuf {
-        workspace().join("fixedmath/proof.json")
+    pub fn path() -> Result<PathBuf, NoWorkspace> {
+        workspace::file("fixedmath/proof.json")
     }
 
     /// Reads it. Where there is no file yet, nothing is recorded, and nothing is current.
@@ -234,7 +237,7 @@ fn is_same(a: f64, b: f64) -> bool {
 /// The hash of fixedmath's sources. Lines that hold only a comment, or nothing, do not count.
 pub fn sources_sha256() -> Result<String, RecordError> {
     let mut files = Vec::new();
-    collect(&workspace().join("fixedmath/src"), &mut files)?;
+    collect(&workspace::file("fixedmath/src")?, &mut files)?;
     files.sort();
     let mut hash = Sha256::new();
     for file in files {

@@ -187,8 +187,7 @@ mod tests {
     use super::*;
 
     fn cornell() -> Scene {
-        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/cornell.toml");
-        Scene::load(path.as_ref()).unwrap()
+        Scene::load(&crate::workspace::scene(None).unwrap()).unwrap()
     }
 
     #[test]

@@ -7,8 +7,7 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use host::board::Board;
-use host::firmware;
-use whole_system::{program, said, xtask};
+use whole_system::{program, repository, said, xtask};
 
 /// 48 units of work: a moment.
 const SMALL: [&str; 6] = ["--size", "32x24", "--spp", "8", "--reference", "none"];
@@ -113,7 +112,7 @@ fn an_interruption_stops_the_core_and_ends_neither_its_emulator_nor_the_session(
     let mut terminal = Command::new("script")
         .args(["--quiet", "--flush", "--return", "--command", &line])
         .arg(&log)
-        .current_dir(firmware::workspace())
+        .current_dir(repository("."))
         .env("SHELL", "/bin/sh")
         .env("TERM", "dumb")
         // The terminal's own size, not that of one around it, in which gdb would stop to page.

@@ -14,7 +14,7 @@ use host::scene::{MAX_SPHERES, Scene};
 use serde_json::Value;
 use tempfile::TempDir;
 use tracer::profile::{Paper, Precise};
-use whole_system::{cornell, film, plan, repository, said};
+use whole_system::{cornell, film, plan, repository};
 
 #[derive(Parser)]
 struct Flags {
@@ -296,34 +296,5 @@ fn without_its_programs_it_says_how_to_get_them_and_stops() {
         "--no-install",
     ] {
         assert!(text.contains(words), "{words} in: {text}");
-    }
-}
-
-/// Debian's compiler is the same without rustup as with it, only its linker is in PATH.
-#[test]
-fn without_rustup_the_compiler_and_the_linker_in_path_are_taken() {
-    let system = tempfile::tempdir().unwrap();
-    let root = system.path();
-    let library = root.join("lib/rustlib/src/rust/library/core/src");
-    std::fs::create_dir_all(&library).unwrap();
-    std::fs::write(library.join("lib.rs"), "").unwrap();
-    std::fs::create_dir(root.join("bin")).unwrap();
-    for name in ["rustc", "cargo", "ld.lld", "qemu-system-arm"] {
-        let program = root.join("bin").join(name);
-        std::fs::write(&program, format!("#!/bin/sh\necho '{}'\n", root.display())).unwrap();
-        std::fs::set_permissions(&program, std::fs::Permissions::from_mode(0o755)).unwrap();
-    }
-    let mut toolchain = whole_system::xtask(&["toolchain", "--no-install"]);
-    toolchain.env("PATH", root.join("bin")).env_remove("RUSTC");
-    let output = toolchain.output().unwrap();
-    let text = said(&output);
-    assert!(output.status.success(), "{text}");
-    for (variable, program) in [
-        ("RUSTC", "rustc"),
-        ("CARGO_TARGET_ARMV5TE_NONE_EABI_LINKER", "ld.lld"),
-        ("CARGO_TARGET_THUMBV7M_NONE_EABI_LINKER", "ld.lld"),
-    ] {
-        let line = format!("export {variable}='{}/bin/{program}'", root.display());
-        assert!(text.contains(&line), "{line} in: {text}");
     }
 }

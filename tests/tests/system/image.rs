@@ -35,18 +35,20 @@ fn recipe(profile: Arithmetic, needs: SceneNeeds) -> Recipe {
 
 /// Builds one of a board's examples, and says where its ELF is.
 fn example(board: Board, name: &str) -> (Output, PathBuf) {
-    let mut command = firmware::cargo(&toolchain(), board, "build", &recipe(Arithmetic::Precise, ALL));
+    let mut command =
+        firmware::cargo(&toolchain(), board, "build", &recipe(Arithmetic::Precise, ALL)).unwrap();
     let output = command.args(["--example", name]).output().unwrap();
-    (output, firmware::example(board, name))
+    (output, firmware::example(board, name).unwrap())
 }
 
 /// As [`example`], but linked by the linker of a machine without rustup, which may be years older than the compiler.
 fn linked_by_the_system(board: Board, name: &str) -> (Output, PathBuf) {
     // All but the last crate are compiled already.
-    let mut command = firmware::cargo(&toolchain(), board, "rustc", &recipe(Arithmetic::Precise, ALL));
+    let mut command =
+        firmware::cargo(&toolchain(), board, "rustc", &recipe(Arithmetic::Precise, ALL)).unwrap();
     command.args(["--example", name, "--", "-Clinker-flavor=gnu-lld"]);
     command.arg(format!("-Clinker={}", system_linker().display()));
-    (command.output().unwrap(), firmware::example(board, name))
+    (command.output().unwrap(), firmware::example(board, name).unwrap())
 }
 
 fn refused(board: Board, name: &str) -> String {

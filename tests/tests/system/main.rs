@@ -9,5 +9,6 @@ mod image;
 mod log;
 mod on_target;
 mod operations;
+mod places;
 mod processes;
 mod trace;

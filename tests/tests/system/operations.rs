@@ -188,7 +188,7 @@ fn the_readme_shows_what_the_bench_prints() {
 /// The cost that a function's documentation gives, if there is such a function in `fixedmath`.
 fn documented_cost(variant: &str) -> Option<u32> {
     let (module, function) = (variant.split("::").next()?, variant.split("::").last()?);
-    let path = host::firmware::workspace().join(format!("fixedmath/src/{module}.rs"));
+    let path = whole_system::repository(&format!("fixedmath/src/{module}.rs"));
     let source = fs::read_to_string(path).ok()?;
     let lines: Vec<&str> = source.lines().map(str::trim).collect();
     let head = [format!("pub fn {function}("), format!("pub const fn {function}(")];

@@ -11,7 +11,7 @@ use host::firmware::{self, Recipe};
 use host::scene::SceneNeeds;
 use serde_json::Value;
 use tempfile::TempDir;
-use whole_system::{program, said, toolchain, xtask};
+use whole_system::{program, repository, said, toolchain, xtask};
 
 /// A picture that takes an emulated core a moment.
 const SMALL: [&str; 6] = ["--size", "64x48", "--spp", "16", "--reference", "none"];
@@ -169,7 +169,7 @@ fn the_collector_takes_cores_that_are_started_elsewhere() {
         .args(["--cores", "2", "--port", "0", "--out"])
         .arg(out.path());
     collector
-        .current_dir(firmware::workspace())
+        .current_dir(repository("."))
         .stdout(Stdio::piped())
         .stderr(Stdio::piped());
     let collector = collector.spawn().expect("it starts");
@@ -214,9 +214,12 @@ fn cargo_run_in_a_board_s_folder_runs_an_image() {
         let script = format!("{exports}\nexec cargo run --locked --profile firmware --example clock_probe");
         let mut shell = Command::new("sh");
         shell.arg("-c").arg(script);
-        shell.current_dir(firmware::workspace().join("firmware").join(board.name()));
+        shell.current_dir(repository("firmware").join(board.name()));
         // The images of the other tests, which need not be built again.
-        shell.env("CARGO_TARGET_DIR", firmware::target_folder());
+        shell.env(
+            "CARGO_TARGET_DIR",
+            firmware::target_folder().expect("a target folder"),
+        );
         let output = shell.output().expect("it starts");
         assert!(
             output.status.success() && said(&output).contains("ticks: 576000"),

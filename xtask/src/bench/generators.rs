@@ -11,6 +11,7 @@ use host::generators::uniformity::{FALSE_ALARM, Power, SURE, Uniformity};
 use host::reference::{self, cache};
 use host::scene::Scene;
 use host::setup::{self, Wanted};
+use host::workspace;
 use serde::Serialize;
 
 use crate::SetUp;
@@ -79,7 +80,7 @@ fn run_dieharder(generators: &mut [Judgement], set_up: &SetUp) -> anyhow::Result
 
 /// Draws the standard scene with either generator.
 fn draw(path: &Path) -> anyhow::Result<Effect> {
-    let scene = Scene::load(Path::new("scenes/cornell.toml"))?;
+    let scene = Scene::load(&workspace::scene(None)?)?;
     let job = reference::Job {
         width: 256,
         height: 192,

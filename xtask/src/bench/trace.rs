@@ -8,15 +8,15 @@ use host::board::Board;
 use host::interrupt;
 use host::job::options::Size;
 use host::samples::{self, Series};
+use host::workspace;
 
 use crate::SetUp;
 
 /// Arguments of `bench trace`.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// Scene file
-    #[arg(default_value = "scenes/cornell.toml")]
-    scene: PathBuf,
+    /// Scene file [default: scenes/cornell.toml of the checkout]
+    scene: Option<PathBuf>,
     /// Boards of the cores
     #[arg(long = "board", value_name = "BOARD,..", value_enum, value_delimiter = ',', default_values_t = Board::ALL)]
     boards: Vec<Board>,
@@ -42,7 +42,7 @@ pub(crate) struct Arguments {
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
     let interrupted = interrupt::watch()?;
     let series = Series {
-        scene: arguments.scene.clone(),
+        scene: workspace::scene(arguments.scene.as_deref())?,
         boards: arguments.boards.clone(),
         size: arguments.size,
         spp: arguments.spp,

@@ -4,23 +4,24 @@
 //! target folder of their own, so that changing the scene compiles only the board's crate again, and so that the host's
 //! builds are not kept waiting; the finished image is then put beside it under a name that says what it is.
 
+mod elf;
+
+use std::env;
 use std::ffi::OsString;
 use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::{env, fmt};
-
-use object::elf::SHF_ALLOC;
-use object::{Object, ObjectSection, ObjectSegment, ObjectSymbol, SectionFlags};
-use serde::{Deserialize, Serialize};
 
 use crate::arithmetic::Arithmetic;
-use crate::board::{Board, DTCM_BUDGET, ITCM_BUDGET};
+use crate::board::Board;
 use crate::file::write_whole;
 use crate::log::Level;
 use crate::scene::SceneNeeds;
 use crate::setup::Toolchain;
+use crate::workspace::{self, NoWorkspace};
+
+pub use elf::{ImageSize, board_of, entry, measure};
 
 /// What an image is to be built for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,32 +70,12 @@ pub struct Image {
     pub size: ImageSize,
 }
 
-/// Memory an image takes.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct ImageSize {
-    /// Instruction memory: code, constants and the first values of data.
-    pub itcm_bytes: u64,
-    /// Data memory without stacks: the boot block's room and data.
-    pub dtcm_bytes: u64,
-    /// All stacks together.
-    pub stack_bytes: u64,
-    /// Routines of a floating-point library, of which there must be none.
-    pub float_symbols: Vec<String>,
-}
-
-impl fmt::Display for ImageSize {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (code, data) = (self.itcm_bytes, self.dtcm_bytes + self.stack_bytes);
-        write!(
-            f,
-            "image: {code} of {ITCM_BUDGET} bytes of code memory, {data} of {DTCM_BUDGET} of data memory"
-        )
-    }
-}
-
 /// Why there is no image.
 #[derive(Debug, thiserror::Error)]
 pub enum FirmwareError {
+    /// There are no sources to build it from.
+    #[error(transparent)]
+    Sources(#[from] NoWorkspace),
     /// A file could not be read or written.
     #[error("firmware: {}: {cause}", path.display())]
     File {
@@ -149,7 +130,7 @@ pub enum FirmwareError {
 
 /// Builds a board's image for `recipe` and checks it.
 pub fn build(toolchain: &Toolchain, board: Board, recipe: &Recipe) -> Result<Image, FirmwareError> {
-    let folder = target_folder();
+    let folder = target_folder()?;
     let images = folder.join("images");
     let failed = |path: &Path| {
         let path = path.to_owned();
@@ -160,7 +141,7 @@ pub fn build(toolchain: &Toolchain, board: Board, recipe: &Recipe) -> Result<Ima
     let lock_path = images.join(".lock");
     let lock = File::create(&lock_path).map_err(failed(&lock_path))?;
     lock.lock().map_err(failed(&lock_path))?;
-    let mut command = cargo(toolchain, board, "build", recipe);
+    let mut command = cargo(toolchain, board, "build", recipe)?;
     let output = command.output().map_err(failed(&toolchain.compiler.cargo))?;
     if !output.status.success() {
         return Err(FirmwareError::Build {
@@ -209,7 +190,7 @@ pub fn build_examples(
         roulette: true,
         log,
     };
-    let mut command = cargo(toolchain, board, "build", &recipe);
+    let mut command = cargo(toolchain, board, "build", &recipe)?;
     for name in names {
         command.args(["--example", name]);
     }
@@ -224,18 +205,24 @@ pub fn build_examples(
             output: String::from_utf8_lossy(&output.stderr).trim_end().to_owned(),
         });
     }
-    Ok(names.iter().map(|name| example(board, name)).collect())
+    let examples = names.iter().map(|name| example(board, name));
+    Ok(examples.collect::<Result<_, _>>()?)
 }
 
 /// Where an example of a board's crate is, once it is built.
-pub fn example(board: Board, name: &str) -> PathBuf {
-    let folder = target_folder().join(board.target());
-    folder.join("firmware").join("examples").join(name)
+pub fn example(board: Board, name: &str) -> Result<PathBuf, NoWorkspace> {
+    let folder = target_folder()?.join(board.target());
+    Ok(folder.join("firmware").join("examples").join(name))
 }
 
 /// A cargo command line on a board's crate: `build`, or `clippy`.
-pub fn cargo(toolchain: &Toolchain, board: Board, verb: &str, recipe: &Recipe) -> Command {
-    let mut command = cargo_for(toolchain, verb, board.name(), board.target());
+pub fn cargo(
+    toolchain: &Toolchain,
+    board: Board,
+    verb: &str,
+    recipe: &Recipe,
+) -> Result<Command, NoWorkspace> {
+    let mut command = cargo_for(toolchain, verb, board.name(), board.target())?;
     command
         .env("TRACER_PROFILE", recipe.profile.name())
         .env("TRACER_NEEDS", recipe.words());
@@ -247,24 +234,29 @@ pub fn cargo(toolchain: &Toolchain, board: Board, verb: &str, recipe: &Recipe) -
             command.args(["--config", &setting]);
         }
     }
-    command
+    Ok(command)
 }
 
 /// A cargo command line on any crate of ours for any processor, whose `core` is built along.
-pub fn cargo_for(toolchain: &Toolchain, verb: &str, package: &str, target: &str) -> Command {
+pub fn cargo_for(
+    toolchain: &Toolchain,
+    verb: &str,
+    package: &str,
+    target: &str,
+) -> Result<Command, NoWorkspace> {
     let mut command = Command::new(&toolchain.compiler.cargo);
     command
-        .current_dir(workspace())
+        .current_dir(workspace::root()?)
         .args([verb, "--locked", "--profile", "firmware"])
         .args(["--package", package, "--target", target])
         .args(["-Zbuild-std=core", "--target-dir"])
-        .arg(target_folder())
+        .arg(target_folder()?)
         .envs(environment(toolchain, target))
         // Flags meant for the host's programs are not for a board's.
         .env_remove("RUSTFLAGS")
         .env_remove("CARGO_ENCODED_RUSTFLAGS")
         .env_remove("RUSTUP_TOOLCHAIN");
-    command
+    Ok(command)
 }
 
 /// The variables by which cargo finds the toolchain for a processor.
@@ -296,157 +288,15 @@ fn path_from(first: Option<&Path>) -> OsString {
     env::join_paths(folders).unwrap_or(path)
 }
 
-/// The workspace this program was built from.
-pub fn workspace() -> &'static Path {
-    let host = Path::new(env!("CARGO_MANIFEST_DIR"));
-    host.parent().unwrap_or(host)
-}
-
 /// Where firmware is built: a folder of its own, so that host builds and it do not wait for each other.
-pub fn target_folder() -> PathBuf {
+pub fn target_folder() -> Result<PathBuf, NoWorkspace> {
     let target = env::var_os("CARGO_TARGET_DIR").unwrap_or_else(|| "target".into());
-    workspace().join(target).join("firmware")
-}
-
-/// The board that an image is for: the one whose data memory begins with the image's boot block.
-pub fn board_of(elf: &[u8]) -> Result<Board, String> {
-    let file = object::File::parse(elf).map_err(|error| error.to_string())?;
-    let boot_block = file.symbol_by_name("__boot_block").map(|symbol| symbol.address());
-    let mut boards = Board::ALL.into_iter();
-    boards
-        .find(|board| Some(board.dtcm().start) == boot_block)
-        .ok_or_else(|| "it has no boot block where a board of ours looks for one".to_owned())
-}
-
-/// The symbol of an image's first line of Rust: the one that its start-up crate calls when memory is in order.
-pub fn entry(elf: &Path) -> Result<&'static str, FirmwareError> {
-    /// Of `cortex-m-rt`, and of `aarch32-rt`.
-    const NAMES: [&str; 2] = ["main", "kmain"];
-    let failed = |cause: String| FirmwareError::Elf {
-        path: elf.to_owned(),
-        cause,
-    };
-    let bytes = fs::read(elf).map_err(|error| failed(error.to_string()))?;
-    let file = object::File::parse(&bytes[..]).map_err(|error| failed(error.to_string()))?;
-    let found = NAMES.into_iter().find(|name| file.symbol_by_name(name).is_some());
-    found.ok_or_else(|| failed(format!("it has no symbol {}", NAMES.join(" or "))))
-}
-
-/// Measures a board's ELF file. What takes memory of a core is what is loaded there and what its sections reserve.
-pub fn measure(board: Board, elf: &[u8]) -> Result<ImageSize, String> {
-    let file = object::File::parse(elf).map_err(|error| error.to_string())?;
-    let symbol = |name: &str| {
-        let found = file.symbol_by_name(name).map(|symbol| symbol.address());
-        found.ok_or_else(|| format!("it has no symbol {name}"))
-    };
-    let stacks = symbol("_stacks_low_end")?..symbol("_stacks_high_end")?;
-    let mut size = ImageSize {
-        stack_bytes: stacks.end.saturating_sub(stacks.start),
-        ..ImageSize::default()
-    };
-    size.dtcm_bytes = symbol("__boot_block_size")?;
-    for section in file.sections().filter(is_allocated) {
-        let address = section.address();
-        if board.dtcm().contains(&address) && !stacks.contains(&address) {
-            size.dtcm_bytes += section.size();
-        } else if board.itcm().contains(&address) {
-            size.itcm_bytes += section.size();
-        }
-    }
-    // The first values of .data lie in instruction memory until start-up copies them.
-    size.itcm_bytes += file
-        .segments()
-        .filter(|segment| board.dtcm().contains(&segment.address()))
-        .map(|segment| segment.file_range().1)
-        .sum::<u64>();
-    let names = file
-        .symbols()
-        .filter(|symbol| !symbol.is_undefined())
-        .filter_map(|symbol| symbol.name().ok());
-    size.float_symbols = names
-        .filter(|name| is_float_routine(name))
-        .map(str::to_owned)
-        .collect();
-    size.float_symbols.sort_unstable();
-    size.float_symbols.dedup();
-    Ok(size)
-}
-
-fn is_allocated<'d>(section: &impl ObjectSection<'d>) -> bool {
-    matches!(section.flags(), SectionFlags::Elf { sh_flags, .. } if sh_flags.contains(SHF_ALLOC))
-}
-
-/// Whether a symbol is a routine of a soft-float library, by the names of the ARM run-time ABI and of compilers' own libraries.
-fn is_float_routine(name: &str) -> bool {
-    if let Some(routine) = name.strip_prefix("__aeabi_") {
-        let compares = ["cd", "cf"].iter().any(|start| routine.starts_with(start));
-        let computes = routine.starts_with(['d', 'f', 'h']);
-        let converts = ["2f", "2d", "2h"].iter().any(|end| routine.contains(end));
-        return compares || computes || converts;
-    }
-    let Some(routine) = name.strip_prefix("__") else {
-        return false;
-    };
-    let routine = routine.trim_end_matches(['2', '3']);
-    ["hf", "sf", "df", "tf"]
-        .iter()
-        .any(|kind| routine.ends_with(kind))
-        || [
-            "fixsf",
-            "fixdf",
-            "fixunssf",
-            "fixunsdf",
-            "floatsi",
-            "floatdi",
-            "floatunsi",
-            "floatundi",
-        ]
-        .iter()
-        .any(|start| routine.starts_with(start))
+    Ok(workspace::root()?.join(target).join("firmware"))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn float_routines_are_told_from_integer_ones() {
-        for name in [
-            "__aeabi_fadd",
-            "__aeabi_dmul",
-            "__aeabi_cdcmpeq",
-            "__aeabi_cfrcmple",
-            "__aeabi_i2f",
-            "__aeabi_ul2d",
-            "__aeabi_d2iz",
-            "__aeabi_h2f",
-            "__addsf3",
-            "__muldf3",
-            "__ltsf2",
-            "__fixsfsi",
-            "__floatundidf",
-            "__extendsfdf2",
-        ] {
-            assert!(is_float_routine(name), "{name}");
-        }
-        for name in [
-            "__aeabi_idiv",
-            "__aeabi_uidivmod",
-            "__aeabi_ldivmod",
-            "__aeabi_lmul",
-            "__aeabi_llsl",
-            "__aeabi_memcpy4",
-            "__aeabi_unwind_cpp_pr0",
-            "__udivsi3",
-            "__muldi3",
-            "__clzsi2",
-            "__boot_block_size",
-            "main",
-            "_ZN4wire3defE",
-        ] {
-            assert!(!is_float_routine(name), "{name}");
-        }
-    }
 
     #[test]
     fn an_image_is_named_after_what_it_is_for() {
@@ -488,22 +338,6 @@ mod tests {
             }
             .words(),
             "roulette"
-        );
-    }
-
-    #[test]
-    fn what_is_no_elf_is_refused() {
-        assert!(measure(Board::Versatilepb, b"no ELF at all").is_err());
-        let missing = entry(Path::new("no-such.elf")).expect_err("there is no such file");
-        assert!(missing.to_string().contains("no-such.elf"), "{missing}");
-        // This test's own program is an ELF with a `main`, but no image.
-        let own = std::env::current_exe().expect("a program");
-        assert_eq!(entry(&own).expect("an ELF"), "main");
-        let own = fs::read(own).expect("its bytes");
-        assert!(
-            measure(Board::Versatilepb, &own)
-                .expect_err("not an image")
-                .contains("_stacks_low_end")
         );
     }
 }
