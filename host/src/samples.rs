@@ -130,6 +130,7 @@ impl Series {
                 seed: 1,
                 reference: None,
                 reference_spp: self.reference_spp,
+                patience: None,
                 out: Some(out.to_owned()),
             },
             boards: vec![board],

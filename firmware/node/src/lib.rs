@@ -8,7 +8,7 @@
 //! # One core's life
 //!
 //! ```text
-//!          HELLO (again every 50 ms while idle)          STOP
+//!          HELLO (again after 50, 100, ... 800 ms)       STOP
 //!   boot ------> idle <----------------------+   any ---------> FAREWELL, 3 times, halt
 //!                 | LEASE                     | no lease left
 //!                 v                           |

@@ -10,8 +10,11 @@ use crate::leases::Leases;
 use crate::order::Order;
 use crate::{Clock, Fault, Network, TICKS_PER_SECOND, log};
 
-/// An idle core asks for work this often.
-const HELLO_EVERY: u32 = TICKS_PER_SECOND / 20;
+/// A core that has just become idle asks for work after this time again, and then after twice the time before...
+const FIRST_PAUSE: u32 = TICKS_PER_SECOND / 20;
+
+/// ...but at least this often: idle cores, however many, leave the host its time.
+const LONGEST_PAUSE: u32 = 16 * FIRST_PAUSE;
 
 /// Times a packet is tried before the core gives up. Between two tries it takes what has arrived, which frees buffers, and rests.
 const SEND_TRIES: u32 = 16;
@@ -121,7 +124,7 @@ impl<'a> Worker<'a> {
             self.units
         );
         self.say_hello()?;
-        let mut last_hello = self.clock.ticks();
+        let (mut last_hello, mut pause) = (self.clock.ticks(), FIRST_PAUSE);
         loop {
             self.receive();
             if self.stopped {
@@ -129,14 +132,16 @@ impl<'a> Worker<'a> {
             }
             if let Some(unit) = self.order.next(&mut self.leases) {
                 self.work(unit)?;
+                pause = FIRST_PAUSE;
                 continue;
             }
             let since = self.clock.ticks().wrapping_sub(last_hello);
-            if since >= HELLO_EVERY {
+            if since >= pause {
                 self.say_hello()?;
                 last_hello = self.clock.ticks();
+                pause = (2 * pause).min(LONGEST_PAUSE);
             } else {
-                self.network.wait(HELLO_EVERY - since);
+                self.network.wait(pause - since);
             }
         }
     }

@@ -15,8 +15,9 @@
 //! A core works through its leases in the order in which it got them, and through a lease from its first unit to its
 //! last. So whatever comes from it says that all that should have come before is either in or lost, and what is lost goes
 //! back at once. A core that says it has nothing to do has lost all that it was told a while ago. What remains is a
-//! core that says nothing: after [`patience`](Leases::late), its leases go elsewhere. Where one of these conclusions is
-//! wrong (packets overtake each other) a unit is rendered twice, to the same bytes, and counted once.
+//! core that says nothing: after some [patience](Leases::late), its leases are on offer, and whoever has nothing to do takes them.
+//! It may have been at work all the time; once it is heard again, what nobody has taken is its own again. Where one of
+//! these conclusions is wrong (packets overtake each other) a unit is rendered twice, to the same bytes, and counted once.
 
 use std::collections::{BTreeMap, BTreeSet, HashSet, VecDeque};
 use std::ops::Range;
@@ -32,10 +33,12 @@ const LEASE_TIME: Duration = Duration::from_millis(60);
 const MAX_UNITS: u32 = 256;
 /// What an idle core was told longer ago than this never reached it.
 const SETTLED: Duration = Duration::from_millis(100);
-/// The least time without a word after which a core's leases go elsewhere.
+/// The least time without a word after which a core's leases are on offer.
 const LEAST_PATIENCE: Duration = Duration::from_secs(2);
 /// The same in units of the core's usual time for one unit.
 const PATIENCE_IN_UNITS: u32 = 20;
+/// The same in the longest time that any core took for one: units of one picture differ, and so do hosts.
+const PATIENCE_IN_LONGEST: u32 = 3;
 
 /// A lease to be sent to a core.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -75,8 +78,27 @@ struct Holder {
     pace: Pace,
     /// When it last said something, or was given work after it had none.
     heard: Duration,
-    /// Its leases were taken back; it gets others once it says something.
-    silent: bool,
+    /// For how long it had said nothing when its leases were put on offer; it gets others once it says something.
+    silent: Option<Duration>,
+}
+
+impl Holder {
+    /// It was at work all the time: what nobody has taken meanwhile is its own again.
+    fn reclaim(&mut self, returned: &mut BTreeSet<u32>) {
+        for lease in std::mem::take(&mut self.leases) {
+            let before = self.leases.len();
+            for unit in (lease.next..lease.end).filter(|unit| returned.remove(unit)) {
+                match self.leases.range_mut(before..).last() {
+                    Some(part) if part.end == unit => part.end += 1,
+                    _ => self.leases.push_back(Lease {
+                        next: unit,
+                        end: unit + 1,
+                        granted: lease.granted,
+                    }),
+                }
+            }
+        }
+    }
 }
 
 /// The lease table.
@@ -85,12 +107,14 @@ pub struct Leases {
     units: u32,
     /// The first unit that was never leased.
     fresh: u32,
-    /// Units that were leased, are not in, and are of no lease now.
+    /// Units that were leased, are not in, and are on offer now.
     returned: BTreeSet<u32>,
     done: HashSet<u32>,
     holders: BTreeMap<u16, Holder>,
     /// Cores that are known to have ended.
     dead: BTreeSet<u16>,
+    /// The longest that a unit has taken, as far as is known.
+    longest: Duration,
     next_number: u16,
 }
 
@@ -104,6 +128,7 @@ impl Leases {
             done: HashSet::new(),
             holders: BTreeMap::new(),
             dead: BTreeSet::new(),
+            longest: Duration::ZERO,
             next_number: 0,
         }
     }
@@ -113,14 +138,14 @@ impl Leases {
         self.done.len() == self.units as usize
     }
 
-    /// The core says that it has nothing to do.
-    pub fn idle(&mut self, core: u16, now: Duration) {
+    /// The core says that it has nothing to do, and did not say so before `said`: its word may have waited in the socket.
+    pub fn idle(&mut self, core: u16, said: Duration, now: Duration) {
         let Some(holder) = self.holder(core, now) else {
             return;
         };
         holder.pace.pause();
         // Granted in order, so the settled ones are at the front.
-        let is_settled = |lease: &Lease| now.saturating_sub(lease.granted) >= SETTLED;
+        let is_settled = |lease: &Lease| said.saturating_sub(lease.granted) >= SETTLED;
         let settled = holder.leases.iter().take_while(|lease| is_settled(lease)).count();
         let lost: Vec<Lease> = holder.leases.drain(..settled).collect();
         for lease in lost {
@@ -131,6 +156,13 @@ impl Leases {
     /// Unit `unit` came in from `core`.
     pub fn arrived(&mut self, core: u16, unit: u32, now: Duration) -> Arrival {
         let mut passed = Vec::new();
+        if let Some(holder) = self.holders.get(&core) {
+            let took = now.saturating_sub(holder.heard);
+            // A core that was stopped, not slow, shall not make everybody patient for as long as that.
+            self.longest = self
+                .longest
+                .max(holder.silent.map_or(took, |waited| took.min(waited)));
+        }
         if let Some(holder) = self.holder(core, now) {
             holder.pace.unit_done(now);
             let of = holder
@@ -162,12 +194,12 @@ impl Leases {
     /// The core has ended: its leases go elsewhere, and it gets no more, whatever of it still arrives.
     pub fn ended(&mut self, core: u16) {
         self.dead.insert(core);
-        for lease in self
+        // Those of a silent core are on offer already.
+        let holder = self
             .holders
             .remove(&core)
-            .map(|holder| holder.leases)
-            .unwrap_or_default()
-        {
+            .filter(|holder| holder.silent.is_none());
+        for lease in holder.map(|holder| holder.leases).unwrap_or_default() {
             self.take_back(lease.next..lease.end);
         }
     }
@@ -177,22 +209,24 @@ impl Leases {
         self.dead.remove(&core);
     }
 
-    /// Takes back the leases of cores that have been silent for longer than 20 of their units and 2 seconds.
-    /// Returns these cores; they get work again once they say something.
+    /// Puts on offer the leases of cores that have been silent for more than 2 seconds, 20 of their usual units, and 3 of the longest
+    /// that any core has taken. Returns these cores; they get work again once they say something.
     pub fn late(&mut self, now: Duration) -> Vec<u16> {
+        let longest = self.longest;
         let patience = |holder: &Holder| {
-            holder.pace.usual().map_or(LEAST_PATIENCE, |unit| {
-                LEAST_PATIENCE.max(unit * PATIENCE_IN_UNITS)
-            })
-        };
-        let is_late = |holder: &Holder| {
-            !holder.leases.is_empty() && now.saturating_sub(holder.heard) > patience(holder)
+            let usual = holder.pace.usual().unwrap_or_default();
+            LEAST_PATIENCE
+                .max(usual * PATIENCE_IN_UNITS)
+                .max(longest * PATIENCE_IN_LONGEST)
         };
         let (mut late, mut lost) = (Vec::new(), Vec::new());
-        for (&core, holder) in self.holders.iter_mut().filter(|(_, holder)| is_late(holder)) {
-            late.push(core);
-            lost.extend(holder.leases.drain(..));
-            holder.silent = true;
+        for (&core, holder) in &mut self.holders {
+            let waited = now.saturating_sub(holder.heard);
+            if holder.silent.is_none() && !holder.leases.is_empty() && waited > patience(holder) {
+                late.push(core);
+                lost.extend(holder.leases.iter().copied());
+                holder.silent = Some(waited);
+            }
         }
         for lease in lost {
             self.take_back(lease.next..lease.end);
@@ -200,12 +234,17 @@ impl Leases {
         late
     }
 
+    /// Whether there is a core that the work of a silent one can go to.
+    pub fn any_speaks(&self) -> bool {
+        self.holders.values().any(|holder| holder.silent.is_none())
+    }
+
     /// The next lease for `core`, if it has room for one and there is something left to lease.
     pub fn grant(&mut self, core: u16, now: Duration) -> Option<Grant> {
         let cores = self.holders.len() as u32;
         let left = self.returned.len() as u32 + (self.units - self.fresh);
         let holder = self.holders.get_mut(&core)?;
-        if holder.silent || holder.leases.len() >= LEASES_PER_CORE {
+        if holder.silent.is_some() || holder.leases.len() >= LEASES_PER_CORE {
             return None;
         }
         // Towards the end leases get shorter, so that all cores end at about the same time.
@@ -246,14 +285,17 @@ impl Leases {
             leases: VecDeque::new(),
             pace: Pace::default(),
             heard: now,
-            silent: false,
+            silent: None,
         };
         let holder = self.holders.entry(core).or_insert_with(new);
-        (holder.heard, holder.silent) = (now, false);
+        holder.heard = now;
+        if holder.silent.take().is_some() {
+            holder.reclaim(&mut self.returned);
+        }
         Some(holder)
     }
 
-    /// These units are of no lease any more; those that are not in must be leased again.
+    /// These units are on offer, but for those that are in.
     fn take_back(&mut self, units: Range<u32>) {
         self.returned
             .extend(units.filter(|unit| !self.done.contains(unit)));

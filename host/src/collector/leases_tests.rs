@@ -26,7 +26,7 @@ fn granted(leases: &mut Leases, core: u16, now: Duration) -> Vec<u32> {
 fn a_core_gets_nothing_before_it_is_heard_and_no_more_than_three_leases_then() {
     let mut leases = Leases::new(100);
     assert_eq!(leases.grant(0, ms(0)), None);
-    leases.idle(0, ms(0));
+    leases.idle(0, ms(0), ms(0));
     assert_eq!(granted(&mut leases, 0, ms(0)), [0, 1, 2]);
     assert_eq!(leases.grant(0, ms(0)), None);
     assert_eq!(leases.arrived(0, 0, ms(10)), Arrival::First);
@@ -36,7 +36,7 @@ fn a_core_gets_nothing_before_it_is_heard_and_no_more_than_three_leases_then() {
 #[test]
 fn leases_grow_with_the_pace_of_the_core() {
     let mut leases = Leases::new(100_000);
-    leases.idle(0, ms(0));
+    leases.idle(0, ms(0), ms(0));
     granted(&mut leases, 0, ms(0));
     for unit in 0..3 {
         leases.arrived(0, unit, ms(u64::from(unit)));
@@ -48,7 +48,7 @@ fn leases_grow_with_the_pace_of_the_core() {
 #[test]
 fn a_unit_counts_once() {
     let mut leases = Leases::new(2);
-    leases.idle(0, ms(0));
+    leases.idle(0, ms(0), ms(0));
     granted(&mut leases, 0, ms(0));
     assert_eq!(leases.arrived(0, 0, ms(1)), Arrival::First);
     assert_eq!(leases.arrived(0, 0, ms(1)), Arrival::Duplicate);
@@ -61,7 +61,7 @@ fn a_unit_counts_once() {
 #[test]
 fn what_was_skipped_goes_back_at_once() {
     let mut leases = Leases::new(3);
-    leases.idle(0, ms(0));
+    leases.idle(0, ms(0), ms(0));
     assert_eq!(granted(&mut leases, 0, ms(0)), [0, 1, 2]);
     leases.arrived(0, 2, ms(30));
     assert_eq!(granted(&mut leases, 0, ms(30)), [0, 1]);
@@ -70,15 +70,15 @@ fn what_was_skipped_goes_back_at_once() {
 #[test]
 fn when_only_the_last_packet_is_lost_an_idle_core_gets_its_unit_again() {
     let mut leases = Leases::new(1);
-    leases.idle(0, ms(0));
+    leases.idle(0, ms(0), ms(0));
     assert_eq!(granted(&mut leases, 0, ms(0)), [0]);
-    leases.idle(0, ms(50));
+    leases.idle(0, ms(50), ms(50));
     assert_eq!(
         granted(&mut leases, 0, ms(50)),
         [0_u32; 0],
         "the lease may still be on its way"
     );
-    leases.idle(0, ms(100));
+    leases.idle(0, ms(100), ms(100));
     assert_eq!(granted(&mut leases, 0, ms(100)), [0]);
 }
 
@@ -86,21 +86,22 @@ fn when_only_the_last_packet_is_lost_an_idle_core_gets_its_unit_again() {
 fn a_silent_core_loses_its_leases_after_two_seconds_and_a_dead_one_at_once() {
     let mut leases = Leases::new(6);
     for core in [0, 1] {
-        leases.idle(core, ms(0));
+        leases.idle(core, ms(0), ms(0));
     }
     assert_eq!(granted(&mut leases, 0, ms(0)), [0, 1, 2]);
     assert_eq!(granted(&mut leases, 1, ms(0)), [3, 4, 5]);
+    leases.arrived(1, 3, ms(600));
     assert_eq!(leases.late(ms(2_000)), [0_u16; 0]);
-    leases.arrived(1, 3, ms(2_000));
     assert_eq!(leases.late(ms(2_001)), [0]);
+    assert!(leases.any_speaks());
     assert_eq!(leases.grant(0, ms(2_001)), None, "it has not said anything since");
     assert_eq!(leases.grant(1, ms(2_001)).map(|grant| grant.first), Some(0));
     leases.ended(1);
-    leases.idle(0, ms(2_050));
+    leases.idle(0, ms(2_050), ms(2_050));
     let mut again = granted(&mut leases, 0, ms(2_050));
     again.sort_unstable();
     assert_eq!(again.len(), 3);
-    leases.idle(1, ms(2_060));
+    leases.idle(1, ms(2_060), ms(2_060));
     assert_eq!(
         leases.grant(1, ms(2_060)),
         None,
@@ -108,14 +109,14 @@ fn a_silent_core_loses_its_leases_after_two_seconds_and_a_dead_one_at_once() {
     );
     leases.started_again(1);
     assert_eq!(leases.grant(1, ms(2_070)), None, "nobody knows where it is");
-    leases.idle(1, ms(2_070));
+    leases.idle(1, ms(2_070), ms(2_070));
     assert!(leases.grant(1, ms(2_070)).is_some());
 }
 
 #[test]
 fn a_core_that_takes_long_over_a_unit_is_given_time() {
     let mut leases = Leases::new(100);
-    leases.idle(0, ms(0));
+    leases.idle(0, ms(0), ms(0));
     granted(&mut leases, 0, ms(0));
     leases.arrived(0, 0, ms(500));
     leases.arrived(0, 1, ms(1_000));
@@ -130,7 +131,7 @@ fn a_core_that_takes_long_over_a_unit_is_given_time() {
 #[test]
 fn a_core_that_was_taken_for_silent_keeps_its_pace() {
     let mut leases = Leases::new(100);
-    leases.idle(0, ms(0));
+    leases.idle(0, ms(0), ms(0));
     granted(&mut leases, 0, ms(0));
     assert_eq!(
         leases.late(ms(2_001)),
@@ -148,6 +149,55 @@ fn a_core_that_was_taken_for_silent_keeps_its_pace() {
 }
 
 #[test]
+fn what_others_took_for_a_unit_is_given_to_every_core() {
+    let mut leases = Leases::new(100);
+    for core in [0, 1] {
+        leases.idle(core, ms(0), ms(0));
+        granted(&mut leases, core, ms(0));
+    }
+    leases.arrived(0, 0, ms(1_500));
+    assert_eq!(leases.late(ms(4_500)), [0_u16; 0], "three units of the other's");
+    assert_eq!(leases.late(ms(4_501)), [1]);
+}
+
+/// It was at work at a long unit: what nobody has taken meanwhile is not leased again, and next time it has longer.
+#[test]
+fn a_core_that_is_heard_again_has_its_leases_back() {
+    let mut leases = Leases::new(7);
+    leases.idle(0, ms(0), ms(0));
+    assert_eq!(granted(&mut leases, 0, ms(0)), [0, 1, 2]);
+    assert_eq!(leases.late(ms(2_100)), [0]);
+    assert_eq!(leases.late(ms(2_200)), [0_u16; 0], "once is enough");
+    assert!(!leases.any_speaks());
+    leases.idle(1, ms(2_300), ms(2_300));
+    assert_eq!(leases.grant(1, ms(2_300)).map(|grant| grant.first), Some(0));
+    assert_eq!(leases.arrived(0, 0, ms(60_000)), Arrival::First);
+    assert_eq!(
+        granted(&mut leases, 1, ms(60_000)),
+        [3, 4],
+        "1 and 2 are its own again"
+    );
+    assert_eq!(granted(&mut leases, 0, ms(60_000)), [5]);
+    assert_eq!(
+        leases.late(ms(66_300)),
+        [1],
+        "thrice what the other was waited for, not thrice the minute that it was stopped"
+    );
+}
+
+/// A HELLO that has waited in the socket for longer than its answer is out says nothing about that answer.
+#[test]
+fn an_old_word_takes_no_lease_back() {
+    let mut leases = Leases::new(3);
+    leases.idle(0, ms(0), ms(0));
+    granted(&mut leases, 0, ms(500));
+    leases.idle(0, ms(500), ms(900));
+    assert_eq!(leases.grant(0, ms(900)), None);
+    leases.idle(0, ms(600), ms(900));
+    assert_eq!(granted(&mut leases, 0, ms(900)), [0, 1, 2]);
+}
+
+#[test]
 fn the_whole_range_of_unit_ids_can_be_leased() {
     let mut fresh = u32::MAX - 2;
     assert_eq!(
@@ -158,7 +208,7 @@ fn the_whole_range_of_unit_ids_can_be_leased() {
 }
 
 /// A fleet on a bad network, in simulated time. Cores do what a node does: queue four leases, ignore a lease number
-/// they saw, say HELLO every 50 ms while idle.
+/// they saw, say HELLO while idle: after 50 ms, and then after twice the time each, up to 800 ms.
 struct Simulation {
     chance: Xoshiro256StarStar,
     faults: Faults,
@@ -198,6 +248,8 @@ enum Event {
 struct SimulatedCore {
     queue: VecDeque<(u32, u32)>,
     seen: Vec<u16>,
+    /// HELLOs said since it had work.
+    hellos: u32,
     dead: bool,
 }
 
@@ -226,6 +278,7 @@ impl Simulation {
         let pause = match state.queue.front_mut() {
             Some((next, count)) => {
                 self.send(now, Event::Unit { core, unit: *next });
+                state.hellos = 0;
                 *next += 1;
                 *count -= 1;
                 if *count == 0 {
@@ -235,7 +288,8 @@ impl Simulation {
             }
             None => {
                 self.send(now, Event::Hello { core });
-                ms(50)
+                state.hellos += 1;
+                ms(50 << (state.hellos - 1).min(4))
             }
         };
         self.at(now + pause, Event::Step { core });
@@ -316,7 +370,7 @@ impl Simulation {
                     counted[unit as usize] += 1;
                 }
             }
-            Event::Hello { core } => leases.idle(core, now),
+            Event::Hello { core } => leases.idle(core, now, now),
             Event::Death { core } => core_of(fleet, core).dead = true,
             Event::Noticed { core } => leases.ended(core),
         }

@@ -7,14 +7,17 @@
 //! ```
 //!
 //! Everything happens in the caller's thread: one packet is taken, judged and answered before the next. What decides
-//! is in parts that know neither socket nor clock: [`leases`], [`intake`], [`sequence`].
+//! is in parts that know neither socket nor clock: [`leases`], [`intake`], [`sequence`], [`silence`]. Their time is the one in which
+//! somebody looked at the socket ([`attended`]).
 
+pub mod attended;
 pub mod intake;
 pub mod leases;
 pub mod pace;
 mod progress;
 mod run;
 pub mod sequence;
+pub mod silence;
 mod socket;
 
 use std::net::SocketAddr;
@@ -28,6 +31,7 @@ use sequence::Sequence;
 
 pub use progress::Progress;
 pub use run::{CollectError, collect};
+pub(crate) use socket::rest;
 pub use socket::{BindError, bind};
 
 /// What the collector knows of one core.
@@ -37,7 +41,7 @@ pub struct CoreRecord {
     pub core: u16,
     /// Where its last packet came from. That may change within a run; a core is known by what its packets say.
     pub source: Option<SocketAddr>,
-    /// When its last packet came, since the start.
+    /// When its last packet came, in time [attended](attended::Attended).
     pub heard: Option<Duration>,
     /// Units of it that counted.
     pub units: u64,

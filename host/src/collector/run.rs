@@ -2,17 +2,20 @@
 
 use std::collections::HashSet;
 use std::io;
-use std::net::UdpSocket;
+use std::net::{SocketAddr, UdpSocket};
+use std::os::fd::AsFd;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use wire::boot::PixelOrder;
 use wire::{FromCore, MAX_PAYLOAD, Order, Pixels, Report, ToCore};
 
+use super::attended::Attended;
 use super::intake::{Rejection, judge};
 use super::leases::{Arrival, Leases};
 use super::progress::{Progress, State};
-use super::{Collection, CoreRecord, End};
+use super::silence::Silence;
+use super::{Collection, CoreRecord, End, rest};
 use crate::film::{Film, FilmError};
 use crate::fleet::{Fleet, RESTARTS};
 use crate::report::Packets;
@@ -21,8 +24,6 @@ use crate::symbols;
 
 /// How long the socket is waited for at once, and so how often deaths and late leases are looked for.
 const TICK: Duration = Duration::from_millis(10);
-/// When no core has said a word for this long, none will.
-const SILENCE: Duration = Duration::from_secs(7);
 /// How long cores that were told to stop are waited for.
 const FAREWELL_TIME: Duration = Duration::from_secs(2);
 /// STOP is said again this often to a core that has not answered.
@@ -44,19 +45,44 @@ pub enum CollectError {
 
 /// Collects the session's picture from its cores.
 ///
-/// Returns also when the fleet is gone or `interrupted` gets true, with what came until then. Whatever the end, the cores
-/// that are left have been told to stop.
+/// Returns also when the fleet is gone or `interrupted` gets true, with what came until then; when all cores have been silent for
+/// `patience`, too, and of [cores that nobody sees](Silence) also without it. Whatever the end, the cores that are left have been
+/// told to stop.
 pub fn collect(
     session: &Session,
     socket: &UdpSocket,
     fleet: &mut Fleet,
+    patience: Option<Duration>,
     interrupted: &AtomicBool,
     progress: &mut Progress,
 ) -> Result<Collection, CollectError> {
-    socket.set_read_timeout(Some(TICK))?;
-    let mut run = Run::new(session, socket, fleet, progress)?;
+    let start = Instant::now();
+    let silence = Silence::new(patience);
+    collect_by(
+        &|| start.elapsed(),
+        session,
+        socket,
+        fleet,
+        silence,
+        interrupted,
+        progress,
+    )
+}
+
+/// The same by any clock.
+pub(super) fn collect_by(
+    clock: &dyn Fn() -> Duration,
+    session: &Session,
+    socket: &UdpSocket,
+    fleet: &mut Fleet,
+    silence: Silence,
+    interrupted: &AtomicBool,
+    progress: &mut Progress,
+) -> Result<Collection, CollectError> {
+    socket.set_nonblocking(true)?;
+    let mut run = Run::new(clock, session, socket, fleet, silence, progress)?;
     let end = run.work(interrupted)?;
-    let elapsed = run.now();
+    let elapsed = clock();
     run.close()?;
     run.progress.finish();
     let mut packets = run.packets;
@@ -79,11 +105,17 @@ enum Work {
 }
 
 struct Run<'a> {
+    clock: &'a dyn Fn() -> Duration,
     session: &'a Session,
     socket: &'a UdpSocket,
     fleet: &'a mut Fleet,
     progress: &'a mut Progress,
-    start: Instant,
+    attended: Attended,
+    /// The time attended until the last look at the socket: what all else goes by.
+    now: Duration,
+    /// When the socket was last seen empty: no packet in it was sent before.
+    emptied: Duration,
+    silence: Silence,
     film: Film,
     work: Work,
     samples: u64,
@@ -94,18 +126,24 @@ struct Run<'a> {
 
 impl<'a> Run<'a> {
     fn new(
+        clock: &'a dyn Fn() -> Duration,
         session: &'a Session,
         socket: &'a UdpSocket,
         fleet: &'a mut Fleet,
+        silence: Silence,
         progress: &'a mut Progress,
     ) -> Result<Self, CollectError> {
         let units = session.plan.units().ok_or(CollectError::TooManyUnits)?;
         Ok(Self {
+            clock,
             session,
             socket,
             fleet,
             progress,
-            start: Instant::now(),
+            attended: Attended::default(),
+            now: Duration::ZERO,
+            emptied: Duration::ZERO,
+            silence,
             film: Film::new(session.plan.width, session.plan.height).with_exponent(session.exponent),
             work: match session.order {
                 PixelOrder::Leased => Work::Leased(Leases::new(units)),
@@ -123,10 +161,6 @@ impl<'a> Run<'a> {
         })
     }
 
-    fn now(&self) -> Duration {
-        self.start.elapsed()
-    }
-
     /// Until the picture is complete or cannot become so.
     fn work(&mut self, interrupted: &AtomicBool) -> Result<End, CollectError> {
         let mut next_look = Duration::ZERO;
@@ -139,43 +173,62 @@ impl<'a> Run<'a> {
             if let Some(payload) = received {
                 self.take(&buffer[..payload.0], payload.1)?;
             }
-            if self.now() < next_look {
+            if self.now < next_look {
                 continue;
             }
-            next_look = self.now() + TICK;
+            next_look = self.now + TICK;
             self.look_after_cores()?;
             self.show();
             // The packets of cores that have ended may still be in the socket: only an empty one is the end.
-            if received.is_none()
-                && let Some(why) = self.desertion()
-            {
+            if received.is_some() {
+                continue;
+            }
+            if let Some(why) = self.desertion() {
                 return Ok(End::Deserted(why));
+            }
+            if let Some(long) = self.silence.announce(self.fleet, self.last_word(), self.now) {
+                self.progress.say(&long);
             }
         }
         Ok(End::Complete)
     }
 
     /// One payload's length and source, or nothing within a tick.
-    fn receive(&self, buffer: &mut [u8]) -> io::Result<Option<(usize, std::net::SocketAddr)>> {
+    fn receive(&mut self, buffer: &mut [u8]) -> io::Result<Option<(usize, SocketAddr)>> {
+        let mut received = self.take_from_socket(buffer)?;
+        if received.is_none() {
+            rest([self.socket.as_fd()], TICK);
+            received = self.take_from_socket(buffer)?;
+        }
+        Ok(received)
+    }
+
+    /// One payload's length and source, if there is one.
+    fn take_from_socket(&mut self, buffer: &mut [u8]) -> io::Result<Option<(usize, SocketAddr)>> {
+        self.now = self.attended.look((self.clock)());
         match self.socket.recv_from(buffer) {
             Ok(received) => Ok(Some(received)),
             Err(error) => match error.kind() {
-                io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut | io::ErrorKind::Interrupted => Ok(None),
+                io::ErrorKind::WouldBlock => {
+                    self.emptied = self.now;
+                    Ok(None)
+                }
+                io::ErrorKind::Interrupted => Ok(None),
                 _ => Err(error),
             },
         }
     }
 
     /// Judges a packet, and answers it where it asks for work or makes room for some.
-    fn take(&mut self, payload: &[u8], source: std::net::SocketAddr) -> Result<(), CollectError> {
+    fn take(&mut self, payload: &[u8], source: SocketAddr) -> Result<(), CollectError> {
         let Some(packet) = self.judge(payload, source) else {
             return Ok(());
         };
-        let (core, now) = (packet.core, self.now());
+        let (core, now) = (packet.core, self.now);
         match packet.report {
             Report::Hello(_) => {
                 if let Work::Leased(leases) = &mut self.work {
-                    leases.idle(core, now);
+                    leases.idle(core, self.emptied, now);
                 }
             }
             Report::Pixels(pixels) => self.take_pixels(core, &pixels)?,
@@ -189,7 +242,7 @@ impl<'a> Run<'a> {
     }
 
     /// The accounts of a packet, and the packet if it is ours.
-    fn judge<'p>(&mut self, payload: &'p [u8], source: std::net::SocketAddr) -> Option<FromCore<'p>> {
+    fn judge<'p>(&mut self, payload: &'p [u8], source: SocketAddr) -> Option<FromCore<'p>> {
         let packet = match judge(self.session, payload) {
             Ok(packet) => packet,
             Err(rejection) => {
@@ -198,11 +251,16 @@ impl<'a> Run<'a> {
                 return None;
             }
         };
-        let now = self.now();
         let record = &mut self.cores[usize::from(packet.core)];
-        (record.source, record.heard) = (Some(source), Some(now));
+        record.source = Some(source);
+        let before = record.heard.replace(self.now);
         match packet.report {
-            Report::Pixels(_) => record.sequence.received(packet.seq),
+            Report::Pixels(_) => {
+                record.sequence.received(packet.seq);
+                if let Some(before) = before {
+                    self.silence.unit_after(self.now.saturating_sub(before));
+                }
+            }
             Report::Hello(_) => record.sequence.sent_before(packet.seq),
             Report::Farewell(farewell) => {
                 record.sequence.sent_before(packet.seq);
@@ -220,7 +278,7 @@ impl<'a> Run<'a> {
     }
 
     fn take_pixels(&mut self, core: u16, pixels: &Pixels) -> Result<(), CollectError> {
-        let now = self.now();
+        let now = self.now;
         self.packets.received += 1;
         let arrival = match &mut self.work {
             Work::Leased(leases) => leases.arrived(core, pixels.unit, now),
@@ -257,11 +315,11 @@ impl<'a> Run<'a> {
         for warning in self.fleet.warnings() {
             self.progress.say(&warning);
         }
-        let now = self.now();
         let Work::Leased(leases) = &mut self.work else {
             return Ok(());
         };
-        for core in leases.late(now) {
+        let late = leases.late(self.now);
+        for core in late.into_iter().filter(|_| leases.any_speaks()) {
             self.progress
                 .say(&format!("core {core} is silent; its work goes to the others"));
         }
@@ -274,20 +332,18 @@ impl<'a> Run<'a> {
     /// Takes all that has arrived.
     fn drain(&mut self) -> Result<(), CollectError> {
         let mut buffer = [0; MAX_PAYLOAD + 1];
-        self.socket.set_nonblocking(true)?;
         while self.samples < self.session.samples()
-            && let Some((len, source)) = self.receive(&mut buffer)?
+            && let Some((len, source)) = self.take_from_socket(&mut buffer)?
         {
             self.take(&buffer[..len], source)?;
         }
-        Ok(self.socket.set_nonblocking(false)?)
+        Ok(())
     }
 
     /// Sends the core as many leases as it may have.
     fn hand_out(&mut self, core: u16) {
-        let now = self.now();
         while let Work::Leased(leases) = &mut self.work
-            && let Some(lease) = leases.grant(core, now)
+            && let Some(lease) = leases.grant(core, self.now)
         {
             self.send(
                 core,
@@ -354,12 +410,17 @@ impl<'a> Run<'a> {
         }
     }
 
+    /// When any core last said something; the start, if none ever did.
+    fn last_word(&self) -> Duration {
+        let heard = self.cores.iter().filter_map(|core| core.heard).max();
+        heard.unwrap_or_default()
+    }
+
     /// Why nothing more will come, if so.
     fn desertion(&self) -> Option<String> {
-        let heard = self.cores.iter().filter_map(|core| core.heard).max();
-        let since = self.now().saturating_sub(heard.unwrap_or_default());
         let all_ended = self.cores.iter().all(|core| core.ended.is_some());
-        let silent = since >= SILENCE && !self.fleet.may_be_silent(heard.is_some());
+        let limit = self.silence.limit(self.fleet);
+        let silent = limit.is_some_and(|limit| self.now.saturating_sub(self.last_word()) >= limit);
         if !all_ended && !silent {
             return None;
         }
@@ -387,7 +448,7 @@ impl<'a> Run<'a> {
         let heard = match record.heard {
             Some(heard) => format!(
                 "last heard {:.1} s ago",
-                self.now().saturating_sub(heard).as_secs_f64()
+                self.now.saturating_sub(heard).as_secs_f64()
             ),
             None => "never heard".to_owned(),
         };
@@ -410,7 +471,7 @@ impl<'a> Run<'a> {
 
     fn state(&self) -> State {
         State {
-            elapsed: self.now(),
+            elapsed: (self.clock)(),
             units: self.cores.iter().map(|core| core.units).sum(),
             samples: self.samples,
             wanted: self.session.samples(),
@@ -426,7 +487,7 @@ impl<'a> Run<'a> {
     /// Tells the cores to stop and waits a little for their last reports. What else comes is counted but not added.
     fn close(&mut self) -> Result<(), CollectError> {
         let mut gone = HashSet::new();
-        let (end, mut next_stop) = (self.now() + FAREWELL_TIME, Duration::ZERO);
+        let (end, mut next_stop) = (self.now + FAREWELL_TIME, Duration::ZERO);
         let mut buffer = [0; MAX_PAYLOAD + 1];
         loop {
             let waiting: Vec<u16> = self
@@ -436,12 +497,12 @@ impl<'a> Run<'a> {
                 .filter(|core| !gone.contains(&core.core))
                 .map(|core| core.core)
                 .collect();
-            if waiting.is_empty() || self.now() >= end {
+            if waiting.is_empty() || self.now >= end {
                 return Ok(());
             }
-            if self.now() >= next_stop {
+            if self.now >= next_stop {
                 waiting.iter().for_each(|&core| self.send(core, Order::Stop));
-                next_stop = self.now() + STOP_EVERY;
+                next_stop = self.now + STOP_EVERY;
             }
             if let Some((len, source)) = self.receive(&mut buffer)? {
                 self.judge(&buffer[..len], source);

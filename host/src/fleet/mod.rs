@@ -132,14 +132,4 @@ impl Fleet {
             Self::Native(_) | Self::Elsewhere => 0,
         }
     }
-
-    /// Whether it means nothing that no core says a word; `heard` says whether any ever did.
-    pub fn may_be_silent(&self, heard: bool) -> bool {
-        match self {
-            Self::Qemu(_) | Self::Native(_) => false,
-            Self::Debugged(_) => true,
-            // Cores that somebody starts by hand may take any time before they are first heard.
-            Self::Elsewhere => !heard,
-        }
-    }
 }

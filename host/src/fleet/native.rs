@@ -1,27 +1,42 @@
 //! Cores as threads of this host: the same worker and the same packets, over a socket instead of a network card.
 
+use std::io::{PipeReader, PipeWriter, pipe};
 use std::net::{Ipv4Addr, UdpSocket};
+use std::os::fd::AsFd;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 use node::{Clock, Fault, Network, Outcome, SendError, StackUse, TICKS_PER_SECOND};
+use rustix::process::{Resource, Rlimit, getrlimit, setpriority_process, setrlimit};
 use tracer::profile::{Paper, Precise};
 use tracer::scene::All;
 use wire::{Boot, MAX_PAYLOAD, Name, Order, ToCore};
 
 use super::FleetError;
 use crate::arithmetic::Arithmetic;
+use crate::collector::rest;
 
-/// The longest rest of an idle core: packets wait no longer than this.
-const REST: Duration = Duration::from_millis(1);
+/// How much cores stand back behind the thread that collects, which must empty its socket however many they are.
+const NICE: i32 = 10;
 
 /// Cores as threads. Dropping it tells them to stop and waits for them.
 #[derive(Debug)]
 pub struct NativeFleet {
     cores: Vec<Core>,
-    stop: Arc<AtomicBool>,
+    end: Arc<End>,
+    /// Once it is closed, no core rests any more.
+    open: Option<PipeWriter>,
+}
+
+/// How cores learn that they shall end, though nobody sends them a packet any more.
+#[derive(Debug)]
+struct End {
+    /// Looked at before every unit.
+    stop: AtomicBool,
+    /// Its other side is closed then, which wakes whoever rests.
+    closed: PipeReader,
 }
 
 #[derive(Debug)]
@@ -33,20 +48,27 @@ enum Core {
 impl NativeFleet {
     /// Starts one thread a boot block.
     pub fn start(boot_blocks: &[Vec<u8>], profile: Arithmetic) -> Result<Self, FleetError> {
+        let failed = |core| {
+            move |cause| FleetError::Start {
+                core,
+                program: "a thread".to_owned(),
+                cause,
+            }
+        };
+        allow_many_files();
+        let (closed, open) = pipe().map_err(failed(0))?;
+        let stop = AtomicBool::new(false);
         let mut fleet = Self {
             cores: Vec::with_capacity(boot_blocks.len()),
-            stop: Arc::default(),
+            end: Arc::new(End { stop, closed }),
+            open: Some(open),
         };
         for (core, block) in (0..).zip(boot_blocks) {
-            let (block, stop) = (block.clone(), Arc::clone(&fleet.stop));
+            let (block, end) = (block.clone(), Arc::clone(&fleet.end));
             let spawned = thread::Builder::new()
                 .name(format!("core {core}"))
-                .spawn(move || run(&block, profile, stop))
-                .map_err(|cause| FleetError::Start {
-                    core,
-                    program: "a thread".to_owned(),
-                    cause,
-                })?;
+                .spawn(move || run(&block, profile, end))
+                .map_err(failed(core))?;
             fleet.cores.push(Core::Running(spawned));
         }
         Ok(fleet)
@@ -75,13 +97,27 @@ impl NativeFleet {
 
 impl Drop for NativeFleet {
     fn drop(&mut self) {
-        self.stop.store(true, Ordering::Relaxed);
+        self.end.stop.store(true, Ordering::Relaxed);
+        drop(self.open.take());
         for core in self.cores.drain(..) {
             if let Core::Running(thread) = core {
                 let _how = thread.join();
             }
         }
     }
+}
+
+/// Every core has a socket of its own, and many systems grant a program 1024 files unless it asks for more.
+fn allow_many_files() {
+    let limit = getrlimit(Resource::Nofile);
+    // Where that is refused, the cores that get no socket say so.
+    let _granted = setrlimit(
+        Resource::Nofile,
+        Rlimit {
+            current: limit.maximum,
+            ..limit
+        },
+    );
 }
 
 /// How a finished thread ended.
@@ -93,9 +129,11 @@ fn how(thread: JoinHandle<Result<Outcome, String>>) -> String {
     }
 }
 
-fn run(block: &[u8], profile: Arithmetic, stop: Arc<AtomicBool>) -> Result<Outcome, String> {
+fn run(block: &[u8], profile: Arithmetic, end: Arc<End>) -> Result<Outcome, String> {
+    // Of this thread alone. Where the system does not let it, the collector waits for its turn like any core.
+    let _as_before = setpriority_process(None, NICE);
     let boot = Boot::decode(block).map_err(|error| format!("its boot block: {error}"))?;
-    let network = Loopback::open(&boot, stop).map_err(|error| format!("its socket: {error}"))?;
+    let network = Loopback::open(&boot, end).map_err(|error| format!("its socket: {error}"))?;
     let clock = HostClock(Instant::now());
     let board = Name::new("native");
     let outcome: Result<Outcome, Fault> = match profile {
@@ -108,19 +146,19 @@ fn run(block: &[u8], profile: Arithmetic, stop: Arc<AtomicBool>) -> Result<Outco
 /// A core's way to the collector: a socket of this host.
 struct Loopback {
     socket: UdpSocket,
-    stop: Arc<AtomicBool>,
-    /// What the worker hears once `stop` is set.
+    end: Arc<End>,
+    /// What the worker hears when it shall end.
     order: ToCore,
 }
 
 impl Loopback {
-    fn open(boot: &Boot<'_>, stop: Arc<AtomicBool>) -> std::io::Result<Self> {
+    fn open(boot: &Boot<'_>, end: Arc<End>) -> std::io::Result<Self> {
         let socket = UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0))?;
         socket.connect((Ipv4Addr::from(boot.collector), boot.port))?;
         socket.set_nonblocking(true)?;
         Ok(Self {
             socket,
-            stop,
+            end,
             order: ToCore {
                 core: boot.core,
                 session: boot.session,
@@ -132,11 +170,13 @@ impl Loopback {
 
 impl Network for Loopback {
     fn send(&mut self, payload: &[u8]) -> Result<(), SendError> {
-        self.socket.send(payload).map(|_| ()).map_err(|_| SendError)
+        // What the host's network does not take now is lost on the way, and made good like any other loss.
+        let _lost = self.socket.send(payload);
+        Ok(())
     }
 
     fn receive(&mut self, buffer: &mut [u8]) -> Option<usize> {
-        if self.stop.load(Ordering::Relaxed) {
+        if self.end.stop.load(Ordering::Relaxed) {
             let mut payload = [0; MAX_PAYLOAD];
             let len = self.order.encode(&mut payload);
             buffer.get_mut(..len)?.copy_from_slice(&payload[..len]);
@@ -147,7 +187,7 @@ impl Network for Loopback {
 
     fn wait(&mut self, ticks: u32) {
         let asked = Duration::from_secs(1) * ticks / TICKS_PER_SECOND;
-        thread::sleep(asked.min(REST));
+        rest([self.socket.as_fd(), self.end.closed.as_fd()], asked);
     }
 }
 

@@ -87,8 +87,8 @@ fn attend(
 ) -> Result<ExitStatus, JobError> {
     let (mut fleet, ended) = (Fleet::Debugged(core), AtomicBool::new(false));
     thread::scope(|scope| {
-        let collection =
-            scope.spawn(|| collector::collect(session, socket, &mut fleet, &ended, &mut Progress::Silent));
+        let collection = scope
+            .spawn(|| collector::collect(session, socket, &mut fleet, None, &ended, &mut Progress::Silent));
         let status = debugger.status();
         ended.store(true, Ordering::Relaxed);
         match collection.join() {

@@ -255,7 +255,9 @@ impl Job {
     ) -> Result<Finished, JobError> {
         let mut progress = Progress::on_stderr();
         let before = start.elapsed();
-        let collection = collector::collect(session, socket, &mut fleet, interrupted, &mut progress)?;
+        let patience = self.options.patience.map(Duration::from_secs);
+        let collection =
+            collector::collect(session, socket, &mut fleet, patience, interrupted, &mut progress)?;
         let wall = before + collection.elapsed;
         let memory = memory::peak(fleet.peak_memory());
         for warning in fleet.end() {

@@ -51,6 +51,10 @@ pub struct PictureOptions {
     /// Samples per pixel of the computed reference, a multiple of 4
     #[arg(long, value_name = "N", default_value = "512", value_parser = samples_per_pixel, allow_negative_numbers = true)]
     pub reference_spp: u32,
+    /// Give the cores up when none has said a word for so long [default: wait while their processes live; of cores started
+    /// elsewhere, for a minute, and for 20 times what a unit has taken at most]
+    #[arg(long, value_name = "SECONDS", value_parser = clap::value_parser!(u64).range(1..), allow_negative_numbers = true)]
+    pub patience: Option<u64>,
     /// Folder for the results [default: out/SCENE-PROFILE of the checkout]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
@@ -358,6 +362,7 @@ mod tests {
             (["--backend", "cloud"], "qemu, native"),
             (["--log", "loud"], "error, warn, info, debug, trace"),
             (["--port", "65536"], "0..=65535"),
+            (["--patience", "0"], "1.."),
             (["--reference-spp", "7"], "a multiple of 4"),
         ] {
             let message = parse(&arguments).expect_err(arguments[1]);

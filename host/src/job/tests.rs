@@ -68,6 +68,26 @@ fn the_picture_depends_on_the_seed_and_not_on_the_cores() {
     assert_ne!(one, sha256(&["--cores", "1", "--seed", "2"]));
 }
 
+/// As many as the flag allows: idle cores must leave the collector its time, and its answers must not be taken for lost.
+#[test]
+fn a_thousand_cores_do_not_keep_the_collector_from_its_work() {
+    let out = tempfile::tempdir().expect("a folder");
+    let start = Instant::now();
+    render(
+        &options(out.path(), &["--cores", "1024", "--size", "128x128"]),
+        &RUNNING,
+    )
+    .expect("a picture");
+    let took = start.elapsed();
+    let duplicate = report(out.path())["packets"]["duplicate"]
+        .as_u64()
+        .expect("a count");
+    assert!(
+        took < Duration::from_secs(20) && duplicate < 100,
+        "1024 units: {took:?}, {duplicate} of them twice"
+    );
+}
+
 #[test]
 fn the_report_says_what_was_done_and_null_for_what_was_not_measured() {
     let out = tempfile::tempdir().expect("a folder");

@@ -98,7 +98,8 @@ fn collected(board: Board, name: &str, log: Option<Level>, flags: &str) -> (Coll
         .collect();
     let mut fleet = Fleet::Qemu(QemuFleet::start(&qemu(), &cores, out.path()).unwrap());
     let (running, mut progress) = (AtomicBool::new(false), Progress::Silent);
-    let collection = collector::collect(&session, &socket, &mut fleet, &running, &mut progress).unwrap();
+    let collection =
+        collector::collect(&session, &socket, &mut fleet, None, &running, &mut progress).unwrap();
     fleet.end();
     let log = std::fs::read_to_string(out.path().join("fleet.log"));
     (collection, log.unwrap_or_default())

@@ -74,9 +74,9 @@ struct Running {
 }
 
 impl Running {
-    fn start() -> Self {
+    fn start(more: &[&str]) -> Self {
         let out = tempfile::tempdir().expect("a folder");
-        let child = render(out.path(), &[&LONG]).spawn().expect("it starts");
+        let child = render(out.path(), &[&LONG, more]).spawn().expect("it starts");
         let file = |core| out.path().join(format!("cores/core-{core}.pid"));
         let process = |core| {
             fs::read_to_string(file(core))
@@ -106,15 +106,15 @@ fn is_running(process: &str) -> bool {
 }
 
 #[test]
-fn cores_that_hang_end_it_too() {
-    let running = Running::start();
+fn cores_that_hang_end_it_for_a_user_who_says_how_long_to_wait() {
+    let running = Running::start(&["--patience", "2"]);
     for core in &running.cores {
         signal("STOP", core);
     }
     let start = Instant::now();
     let cores = running.cores.clone();
     let (output, _) = running.end();
-    assert!(start.elapsed() < Duration::from_secs(10));
+    assert!(start.elapsed() < Duration::from_secs(6));
     assert!(
         said(&output).contains("no core says anything any more"),
         "{}",
@@ -125,7 +125,7 @@ fn cores_that_hang_end_it_too() {
 
 #[test]
 fn an_interruption_keeps_the_picture_and_ends_the_cores() {
-    let running = Running::start();
+    let running = Running::start(&[]);
     signal("INT", &running.child.id().to_string());
     let cores = running.cores.clone();
     let (output, out) = running.end();
@@ -136,7 +136,7 @@ fn an_interruption_keeps_the_picture_and_ends_the_cores() {
 
 #[test]
 fn no_core_outlives_a_host_that_is_killed() {
-    let running = Running::start();
+    let running = Running::start(&[]);
     signal("KILL", &running.child.id().to_string());
     let cores = running.cores.clone();
     running.end();
