@@ -5,6 +5,7 @@
 
 use std::ffi::OsString;
 use std::ops::Range;
+use std::os::unix::ffi::{OsStrExt, OsStringExt};
 use std::path::Path;
 
 /// Usable bytes of instruction memory: code, constants and first values.
@@ -135,9 +136,9 @@ impl Board {
         let words = machine.iter().chain(&shared).map(OsString::from);
         let mut arguments: Vec<OsString> = words.collect();
         if let Some(boot) = boot {
-            let (address, file) = (self.traits().dtcm.start, escaped(boot));
-            arguments.push("-device".into());
-            arguments.push(format!("loader,addr={address:#x},file={file},force-raw=on").into());
+            let address = self.traits().dtcm.start;
+            let loader = format!("loader,addr={address:#x},force-raw=on,file=");
+            arguments.extend(["-device".into(), with_path(&loader, boot)]);
         }
         arguments.extend(["-kernel".into(), elf.into()]);
         arguments
@@ -145,17 +146,18 @@ impl Board {
 
     /// The words that put the frames of a board's log on QEMU's standard output, and its console at the end of a file.
     pub fn log_to_stdout(self, console: &Path) -> Vec<OsString> {
-        let console = format!("file,id=console,append=on,path={}", escaped(console));
-        let console = ["-chardev", &console, "-serial", "chardev:console"];
-        let words = ["-monitor", "none"].iter().chain(&console);
-        words.chain(self.traits().log).map(OsString::from).collect()
+        let console = with_path("file,id=console,append=on,path=", console);
+        let mut words: Vec<OsString> = vec!["-chardev".into(), console];
+        let others = ["-serial", "chardev:console", "-monitor", "none"].iter();
+        words.extend(others.chain(self.traits().log).map(OsString::from));
+        words
     }
 }
 
 /// The words that make QEMU record the packets of a board's network card in `file`, as Wireshark reads them.
 pub fn capture_to(file: &Path) -> [OsString; 2] {
-    let dump = format!("filter-dump,id=capture,netdev={NETWORK},file={}", escaped(file));
-    ["-object".into(), dump.into()]
+    let dump = format!("filter-dump,id=capture,netdev={NETWORK},file=");
+    ["-object".into(), with_path(&dump, file)]
 }
 
 /// The words that make QEMU wait for a debugger on a TCP port of this host before the first instruction.
@@ -163,9 +165,16 @@ pub fn wait_for_debugger(port: u16) -> [OsString; 3] {
     ["-S".into(), "-gdb".into(), format!("tcp:127.0.0.1:{port}").into()]
 }
 
-/// A path as the value of one of QEMU's options, which ends at a comma unless that is doubled.
-fn escaped(path: &Path) -> String {
-    path.display().to_string().replace(',', ",,")
+/// One of QEMU's options with a path as its last value, which would end at a comma unless that is doubled. Any other byte is itself.
+fn with_path(option: &str, path: &Path) -> OsString {
+    let mut bytes = option.as_bytes().to_vec();
+    for &byte in path.as_os_str().as_bytes() {
+        bytes.push(byte);
+        if byte == b',' {
+            bytes.push(byte);
+        }
+    }
+    OsString::from_vec(bytes)
 }
 
 impl serde::Serialize for Board {
@@ -182,19 +191,22 @@ impl std::fmt::Display for Board {
 
 #[cfg(test)]
 mod tests {
+    use std::ffi::OsStr;
+
     use super::*;
 
     #[test]
-    fn a_comma_in_a_path_is_doubled_for_qemu() {
-        let words =
-            Board::Versatilepb.command_line(Path::new("image.elf"), Some(Path::new("a,b/core-0.boot")));
-        let loader = OsString::from("loader,addr=0x400000,file=a,,b/core-0.boot,force-raw=on");
+    fn a_path_reaches_qemu_byte_by_byte_but_for_commas_which_are_doubled() {
+        let path = Path::new(OsStr::from_bytes(b"-a,b %d\n\xff/file"));
+        let option = |start: &str| OsString::from_vec([start.as_bytes(), b"-a,,b %d\n\xff/file"].concat());
+        let words = Board::Versatilepb.command_line(Path::new("image.elf"), Some(path));
+        let loader = option("loader,addr=0x400000,force-raw=on,file=");
         assert!(words.contains(&loader), "{words:?}");
-        let console = OsString::from("file,id=console,append=on,path=a,,b/core-0.log");
-        let words = Board::Versatilepb.log_to_stdout(Path::new("a,b/core-0.log"));
+        let words = Board::Versatilepb.log_to_stdout(path);
+        let console = option("file,id=console,append=on,path=");
         assert!(words.contains(&console), "{words:?}");
-        let dump = "filter-dump,id=capture,netdev=net,file=a,,b/core-0.pcap";
-        assert_eq!(capture_to(Path::new("a,b/core-0.pcap"))[1], dump);
+        let dump = option("filter-dump,id=capture,netdev=net,file=");
+        assert_eq!(capture_to(path)[1], dump);
     }
 
     #[test]

@@ -1,5 +1,7 @@
 //! What the whole-system tests share: the standard scene, its picture without a fleet in between, and the programs.
 
+use std::ffi::OsStr;
+use std::os::unix::ffi::OsStrExt;
 use std::path::PathBuf;
 use std::process::{Command, Output, Stdio};
 use std::sync::OnceLock;
@@ -13,6 +15,7 @@ use host::picture::Estimate;
 use host::scene::{Scene, compile};
 use host::setup::{self, Install, Toolchain, Wanted};
 use host::workspace;
+use tempfile::TempDir;
 use tracer::profile::Profile;
 use tracer::unit::{Plan, Termination};
 
@@ -88,6 +91,16 @@ pub fn qemu() -> PathBuf {
     };
     let tools = setup::ensure(wanted, Install::Forbidden).unwrap_or_else(|error| panic!("{error}"));
     tools.qemu.expect("set-up gives what is wanted")
+}
+
+/// A folder of a name that nobody expects: with a comma, which ends a value on QEMU's command line, and bytes that are no UTF-8.
+///
+/// # Panics
+/// If there is no room for it.
+pub fn oddly_named_folder() -> TempDir {
+    let name = OsStr::from_bytes(b"-a, %d\n\xff\xfe ");
+    let folder = tempfile::Builder::new().prefix(name).tempdir();
+    folder.expect("a folder")
 }
 
 /// The linker of a machine without rustup, which must be there.

@@ -1,6 +1,8 @@
 //! `cargo xtask trace`: the recorded packets, byte by byte, against the protocol's documents and its decoders.
 
+use std::ffi::{OsStr, OsString};
 use std::net::Ipv4Addr;
+use std::os::unix::ffi::{OsStrExt, OsStringExt};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::atomic::AtomicBool;
@@ -11,7 +13,7 @@ use host::capture::Tally;
 use host::job::{JobError, TraceOptions, trace};
 use serde_json::Value;
 use tempfile::TempDir;
-use whole_system::repository;
+use whole_system::{oddly_named_folder, repository};
 use wire::{FromCore, Order, Report, ToCore};
 
 const COLLECTOR: Ipv4Addr = Ipv4Addr::new(10, 0, 2, 2);
@@ -40,16 +42,18 @@ struct Flags {
 
 fn options(out: &Path, flags: &str) -> TraceOptions {
     let scene = repository("scenes/cornell.toml");
-    let scene = scene.to_str().unwrap();
-    let words = ["trace", scene, "--reference", "none", "--core", "1", "--out"];
-    let words = words.into_iter().chain([out.to_str().unwrap()]);
-    Flags::parse_from(words.chain(flags.split_whitespace())).options
+    let flags = flags.split_whitespace().map(OsStr::new);
+    let words = ["trace", "--reference", "none", "--core", "1"]
+        .map(OsStr::new)
+        .into_iter()
+        .chain(flags);
+    let out = OsString::from_vec([b"--out=", out.as_os_str().as_bytes()].concat());
+    Flags::parse_from(words.chain([scene.as_os_str(), &out])).options
 }
 
 /// A traced render's folder.
 fn traced(flags: &str) -> TempDir {
-    // A comma in the name, which ends a value on QEMU's command line.
-    let out = tempfile::Builder::new().prefix("trace,").tempdir().unwrap();
+    let out = oddly_named_folder();
     trace(&options(out.path(), flags), &AtomicBool::new(false)).unwrap();
     out
 }
