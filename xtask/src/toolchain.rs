@@ -1,5 +1,8 @@
 //! `cargo xtask toolchain`
 
+use std::collections::BTreeMap;
+use std::io::{Write as _, stdout};
+use std::os::unix::ffi::OsStrExt;
 use std::process::ExitCode;
 
 use anyhow::Context;
@@ -8,6 +11,9 @@ use host::firmware;
 use host::setup::{self, Wanted};
 
 use crate::SetUp;
+
+/// Where `firmware/qemu-run`, cargo's runner for the boards, looks for this program.
+const RUNNER: &str = "TRACER_XTASK";
 
 /// Arguments of `toolchain`.
 #[derive(clap::Args)]
@@ -25,24 +31,28 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
     let tools = setup::ensure(wanted, arguments.set_up.install())?;
     let toolchain = tools.firmware.context("set-up gave no compiler")?;
     let itself = std::env::current_exe().context("this program does not know where it is")?;
-    let mut variables: Vec<(String, String)> = Vec::new();
+    // This program itself, so that the boards' cargo need not build it. Not as their runner: cargo would cut its path at every space.
+    let mut variables = BTreeMap::from([(RUNNER.to_owned(), itself.into_os_string())]);
     for board in Board::ALL {
-        for (name, value) in firmware::environment(&toolchain, board.target()) {
-            variables.push((name, value.to_string_lossy().into_owned()));
-        }
-        // This program itself, so that the boards' cargo need not build it.
-        let runner = format!("{} qemu-run", itself.display());
-        variables.push((firmware::variable_of(board.target(), "RUNNER"), runner));
+        variables.extend(firmware::environment(&toolchain, board.target()));
     }
-    variables.sort_unstable();
-    variables.dedup();
+    let mut script = Vec::new();
     for (name, value) in variables {
-        println!("export {name}={}", quoted(&value));
+        script.extend_from_slice(format!("export {name}=").as_bytes());
+        script.extend(quoted(value.as_bytes()));
+        script.push(b'\n');
     }
+    stdout()
+        .write_all(&script)
+        .context("cannot print the variables")?;
     Ok(ExitCode::SUCCESS)
 }
 
-/// A word for a shell.
-fn quoted(value: &str) -> String {
-    format!("'{}'", value.replace('\'', r"'\''"))
+/// A word for a shell, of whatever bytes.
+fn quoted(value: &[u8]) -> Vec<u8> {
+    let quotes = value
+        .split(|&byte| byte == b'\'')
+        .collect::<Vec<_>>()
+        .join(&br"'\''"[..]);
+    [b"'", &quotes[..], b"'"].concat()
 }

@@ -271,8 +271,8 @@ pub fn environment(toolchain: &Toolchain, target: &str) -> [(String, OsString); 
     ]
 }
 
-/// Where cargo looks for a target's own linker, runner and the like.
-pub fn variable_of(target: &str, what: &str) -> String {
+/// Where cargo looks for a target's own linker and the like.
+fn variable_of(target: &str, what: &str) -> String {
     let target = target.replace('-', "_").to_uppercase();
     format!("CARGO_TARGET_{target}_{what}")
 }

@@ -142,3 +142,38 @@ fn without_rustup_the_compiler_and_the_linker_in_path_are_taken() {
         assert!(said(&output).contains(&line), "{line} in: {}", said(&output));
     }
 }
+
+#[test]
+fn the_runner_of_cargo_is_found_in_a_folder_with_a_space() {
+    let folder = tempfile::Builder::new().prefix("it's a ").tempdir().unwrap();
+    let (runner, program) = (folder.path().join("qemu-run"), folder.path().join("an xtask"));
+    fs::copy(repository("firmware/qemu-run"), &runner).unwrap();
+    fs::copy(whole_system::program("xtask"), &program).unwrap();
+
+    // What the shell makes of the variables is what they mean.
+    let system = system("");
+    let mut toolchain = std::process::Command::new(&program);
+    toolchain
+        .args(["toolchain", "--no-install"])
+        .current_dir(repository("."));
+    toolchain
+        .env("PATH", system.path().join("bin"))
+        .env_remove("RUSTC");
+    let printed = toolchain.output().unwrap();
+    assert!(printed.status.success(), "{}", said(&printed));
+    let exports = String::from_utf8(printed.stdout).unwrap();
+    let mut shell = std::process::Command::new("sh");
+    shell
+        .arg("-c")
+        .arg(format!(
+            "PATHS=$PATH; {exports} PATH=$PATHS; exec \"$0\" nothing.elf"
+        ))
+        .arg(&runner);
+    let output = shell.env_remove("CARGO_MANIFEST_DIR").output().unwrap();
+    // The program has been found, and says that there is no such image.
+    assert!(
+        said(&output).contains("cannot read") && said(&output).contains("nothing.elf"),
+        "{}",
+        said(&output)
+    );
+}
