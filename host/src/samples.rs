@@ -131,6 +131,7 @@ impl Series {
                 reference: None,
                 reference_spp: self.reference_spp,
                 patience: None,
+                reference_cache: None,
                 out: Some(out.to_owned()),
             },
             boards: vec![board],

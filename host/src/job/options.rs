@@ -1,10 +1,12 @@
 //! What a render is asked for: the flags of `cargo xtask render` and of the collector.
 
+use std::ffi::OsString;
 use std::fmt;
 use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::ValueEnum;
+use clap::builder::{OsStringValueParser, TypedValueParser as _};
 use tracer::unit::{Plan, Termination};
 use wire::boot::PixelOrder;
 
@@ -46,7 +48,7 @@ pub struct PictureOptions {
     #[arg(long, value_name = "N", default_value = "1", allow_negative_numbers = true)]
     pub seed: u64,
     /// What to compare with: `none`, or an OpenEXR file [default: computed in double precision, and kept]
-    #[arg(long, value_name = "none|FILE")]
+    #[arg(long, value_name = "none|FILE", value_parser = OsStringValueParser::new().map(Reference::from))]
     pub reference: Option<Reference>,
     /// Samples per pixel of the computed reference, a multiple of 4
     #[arg(long, value_name = "N", default_value = "512", value_parser = samples_per_pixel, allow_negative_numbers = true)]
@@ -55,6 +57,9 @@ pub struct PictureOptions {
     /// elsewhere, for a minute, and for 20 times what a unit has taken at most]
     #[arg(long, value_name = "SECONDS", value_parser = clap::value_parser!(u64).range(1..), allow_negative_numbers = true)]
     pub patience: Option<u64>,
+    /// Folder where computed references are kept [default: fixed-point-path-tracer in XDG_CACHE_HOME or ~/.cache]
+    #[arg(long, value_name = "DIR")]
+    pub reference_cache: Option<PathBuf>,
     /// Folder for the results [default: out/SCENE-PROFILE of the checkout]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
@@ -234,15 +239,13 @@ pub enum Reference {
     File(PathBuf),
 }
 
-impl FromStr for Reference {
-    type Err = std::convert::Infallible;
-
-    fn from_str(text: &str) -> Result<Self, Self::Err> {
-        Ok(if text == "none" {
+impl From<OsString> for Reference {
+    fn from(text: OsString) -> Self {
+        if text == "none" {
             Self::None
         } else {
             Self::File(text.into())
-        })
+        }
     }
 }
 

@@ -1,7 +1,6 @@
 //! What a render leaves: pictures, report, and a summary for people.
 
 use std::fmt::Write as _;
-use std::path::Path;
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
@@ -61,7 +60,7 @@ impl Results<'_> {
         }
         let reference = match &self.job.reference {
             Some(given) => given.clone(),
-            None => self.computed_reference()?,
+            None => self.computed_reference(),
         };
         // Cores send sums and no squares. The oracle walks the same paths, so its noise is the picture's.
         let oracle = self.oracle();
@@ -75,7 +74,7 @@ impl Results<'_> {
         })
     }
 
-    fn computed_reference(&self) -> Result<Estimate, JobError> {
+    fn computed_reference(&self) -> Estimate {
         let options = &self.job.options;
         let job = reference::Job {
             width: options.size.width,
@@ -90,9 +89,13 @@ impl Results<'_> {
         eprintln!("comparing with double precision at {} samples per pixel", job.spp);
         let bar = bar("reference", job.samples());
         let done = |samples| bar.set_position(samples);
-        let (estimate, _) = cache::reference(Path::new("out/.references"), &self.job.scene, &job, done)?;
+        let folder = cache::folder(options.reference_cache.as_deref());
+        let (estimate, origin) = cache::reference(folder.as_deref(), &self.job.scene, &job, done);
         bar.finish_and_clear();
-        Ok(estimate)
+        if let Some(warning) = origin.warning() {
+            eprintln!("{warning}");
+        }
+        estimate
     }
 
     /// The same samples in exact arithmetic. Not for the stochastic order, whose samples are others each time.

@@ -3,13 +3,15 @@
 //! A file's name is a digest of everything the result depends on; its end is a checksum of what is before it. A file
 //! that was cut short or altered does not pass and is made anew.
 
+use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use etcetera::base_strategy::{BaseStrategy, Xdg};
 use sha2::{Digest, Sha256};
 
 use super::{Job, render};
-use crate::file::{WriteError, write_whole};
+use crate::file::write_whole;
 use crate::picture::{Estimate, Picture};
 use crate::scene::Scene;
 
@@ -21,7 +23,7 @@ const CHECKSUM: usize = 32;
 const PIXEL: usize = 6 * size_of::<f64>();
 
 /// Where a reference came from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Origin {
     /// Found in the cache.
     Cached,
@@ -29,32 +31,61 @@ pub enum Origin {
     Rendered,
     /// Rendered now; the cached one was damaged.
     Replaced,
+    /// Rendered now, and again the next time, for this reason.
+    NotKept(String),
 }
 
-/// The reference for `job`: from the folder `cache` if it is there and whole, else rendered and put there.
+impl Origin {
+    /// What users may want to mend.
+    pub fn warning(&self) -> Option<String> {
+        let Self::NotKept(cause) = self else {
+            return None;
+        };
+        Some(format!(
+            "warning: the reference is not kept for the next time: {cause}; name a folder for it with --reference-cache or \
+             XDG_CACHE_HOME"
+        ))
+    }
+}
+
+/// The folder for references: the one named, or ours among the user's caches. None where the user has no home.
+pub fn folder(named: Option<&Path>) -> Option<PathBuf> {
+    let ours = || Some(Xdg::new().ok()?.cache_dir().join("fixed-point-path-tracer"));
+    named.map(Path::to_owned).or_else(ours)
+}
+
+/// The reference for `job`: from the folder `cache` if it is there and whole, else rendered, and put there if that is possible.
 pub fn reference(
-    cache: &Path,
+    cache: Option<&Path>,
     scene: &Scene,
     job: &Job,
     progress: impl Fn(u64) + Sync,
-) -> Result<(Estimate, Origin), WriteError> {
-    let path = place(cache, scene, job);
-    let origin = match std::fs::read(&path) {
-        Ok(bytes) => match decode(&bytes, job) {
-            Some(estimate) => return Ok((estimate, Origin::Cached)),
-            None => Origin::Replaced,
-        },
-        // Whatever keeps it from being read will keep it from being written, and is reported then.
-        Err(_) => Origin::Rendered,
-    };
-    std::fs::create_dir_all(cache).map_err(|source| WriteError {
-        path: cache.to_owned(),
-        cause: source.to_string(),
-    })?;
+) -> (Estimate, Origin) {
+    let path = cache.map(|cache| place(cache, scene, job));
+    // Whatever keeps it from being read will keep it from being written, and is reported then.
+    let kept = path.as_deref().and_then(|path| fs::read(path).ok());
+    let mut origin = Origin::Rendered;
+    if let Some(bytes) = kept {
+        match decode(&bytes, job) {
+            Some(estimate) => return (estimate, Origin::Cached),
+            None => origin = Origin::Replaced,
+        }
+    }
     let estimate = render(scene, job, progress);
-    let bytes = encode(&estimate);
-    write_whole(&path, |writer| writer.write_all(&bytes))?;
-    Ok((estimate, origin))
+    let home = || "you have no home folder".to_owned();
+    let stored = path.ok_or_else(home).and_then(|path| store(&path, &estimate));
+    (estimate, stored.map_or_else(Origin::NotKept, |()| origin))
+}
+
+/// Puts a reference where the next render looks for it, or says why not.
+fn store(path: &Path, estimate: &Estimate) -> Result<(), String> {
+    if let Some(folder) = path.parent() {
+        let failed = |cause| format!("cannot make the folder {}: {cause}", folder.display());
+        fs::create_dir_all(folder).map_err(failed)?;
+    }
+    let bytes = encode(estimate);
+    let written = write_whole(path, |writer| writer.write_all(&bytes));
+    written.map_err(|error| format!("cannot write {}: {}", error.path.display(), error.cause))
 }
 
 /// The file for `job`.
@@ -125,9 +156,9 @@ mod tests {
     fn the_second_time_it_is_cached_and_the_same() {
         let folder = tempfile::tempdir().unwrap();
         let cache = folder.path().join("not").join("there").join("yet");
-        let (first, origin) = reference(&cache, &scene(), &JOB, |_| {}).unwrap();
+        let (first, origin) = reference(Some(&cache), &scene(), &JOB, |_| {});
         assert_eq!(origin, Origin::Rendered);
-        let (second, origin) = reference(&cache, &scene(), &JOB, |_| panic!("rendered again")).unwrap();
+        let (second, origin) = reference(Some(&cache), &scene(), &JOB, |_| panic!("rendered again"));
         assert_eq!(origin, Origin::Cached);
         assert_eq!(first, second);
     }
@@ -135,9 +166,9 @@ mod tests {
     #[test]
     fn damage_of_any_byte_is_noticed_and_mended() {
         let folder = tempfile::tempdir().unwrap();
-        let (whole, _) = reference(folder.path(), &scene(), &JOB, |_| {}).unwrap();
+        let (whole, _) = reference(Some(folder.path()), &scene(), &JOB, |_| {});
         let path = place(folder.path(), &scene(), &JOB);
-        let bytes = std::fs::read(&path).unwrap();
+        let bytes = fs::read(&path).unwrap();
         let mut damaged: Vec<Vec<u8>> = vec![
             vec![],
             bytes[..bytes.len() / 2].to_vec(),
@@ -149,11 +180,11 @@ mod tests {
             damaged.push(copy);
         }
         for copy in damaged {
-            std::fs::write(&path, copy).unwrap();
-            let (again, origin) = reference(folder.path(), &scene(), &JOB, |_| {}).unwrap();
+            fs::write(&path, copy).unwrap();
+            let (again, origin) = reference(Some(folder.path()), &scene(), &JOB, |_| {});
             assert_eq!(origin, Origin::Replaced);
             assert_eq!(again, whole);
-            assert_eq!(std::fs::read(&path).unwrap(), bytes);
+            assert_eq!(fs::read(&path).unwrap(), bytes);
         }
     }
 
@@ -188,11 +219,25 @@ mod tests {
     }
 
     #[test]
-    fn a_cache_that_cannot_be_written_is_an_error_not_a_slow_success() {
+    fn a_cache_that_cannot_be_written_is_a_warning_beside_the_reference() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("a-file");
-        std::fs::write(&file, b"").unwrap();
-        let error = reference(&file, &scene(), &JOB, |_| panic!("rendered in vain")).unwrap_err();
-        assert!(error.to_string().contains("a-file"), "{error}");
+        fs::write(&file, b"").unwrap();
+        let (kept, _) = reference(Some(folder.path()), &scene(), &JOB, |_| {});
+        for (cache, words) in [(Some(file.as_path()), "a-file"), (None, "home")] {
+            let (estimate, origin) = reference(cache, &scene(), &JOB, |_| {});
+            assert_eq!(estimate, kept);
+            let warning = origin.warning().expect("it was not kept");
+            for words in [words, "--reference-cache"] {
+                assert!(warning.contains(words), "{warning}");
+            }
+        }
+    }
+
+    #[test]
+    fn references_are_kept_among_the_caches_of_the_user_unless_they_say_where() {
+        let ours = folder(None).expect("tests have a home");
+        assert!(ours.is_absolute() && ours.ends_with("fixed-point-path-tracer"));
+        assert_eq!(folder(Some(Path::new("here"))), Some("here".into()));
     }
 }

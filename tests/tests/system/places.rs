@@ -124,6 +124,41 @@ fn outside_of_a_checkout_it_says_so() {
     }
 }
 
+/// A file where caches would be, and where the results would be.
+#[test]
+fn a_reference_that_cannot_be_kept_is_a_warning_and_a_folder_that_cannot_be_written_is_refused_first() {
+    let there = tempfile::tempdir().unwrap();
+    let file = there.path().join("out");
+    fs::write(&file, "in the way").unwrap();
+    let words = [&TINY[..7], &["--reference-spp", "4", "--out", "results"]].concat();
+    let mut render = xtask(&words);
+    render.current_dir(there.path()).env("XDG_CACHE_HOME", &file);
+    let output = render.output().unwrap();
+    assert!(output.status.success(), "{}", said(&output));
+    for words in ["warning", file.to_str().unwrap(), "--reference-cache"] {
+        assert!(said(&output).contains(words), "{words} in: {}", said(&output));
+    }
+    assert!(there.path().join("results/reference.exr").is_file());
+
+    let kept = [&words[..], &["--reference-cache", "kept"]].concat();
+    let output = xtask(&kept).current_dir(there.path()).output().unwrap();
+    assert!(
+        output.status.success() && !said(&output).contains("warning"),
+        "{}",
+        said(&output)
+    );
+    assert_eq!(fs::read_dir(there.path().join("kept")).unwrap().count(), 1);
+
+    let checkout = other_checkout();
+    fs::write(checkout.path().join("out"), "in the way").unwrap();
+    let output = xtask(&words[..9]).current_dir(checkout.path()).output().unwrap();
+    assert!(!output.status.success(), "{}", said(&output));
+    for words in ["cannot write to the folder out/", "--out"] {
+        assert!(said(&output).contains(words), "{words} in: {}", said(&output));
+    }
+    assert!(!said(&output).contains("units"), "{}", said(&output));
+}
+
 /// Debian's compiler comes without a linker of its own.
 #[test]
 fn without_rustup_the_compiler_and_the_linker_in_path_are_taken() {

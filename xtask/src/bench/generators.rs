@@ -88,7 +88,10 @@ fn draw(path: &Path) -> anyhow::Result<Effect> {
         termination: reference::Termination::Roulette,
         seed: 0x5eed,
     };
-    let (reference, _) = cache::reference(Path::new("out/.references"), &scene, &job, |_| ())?;
+    let (reference, origin) = cache::reference(cache::folder(None).as_deref(), &scene, &job, |_| ());
+    if let Some(warning) = origin.warning() {
+        eprintln!("{warning}");
+    }
     let pictures = Pictures::render(&scene, 1024, reference);
     pictures.write(path)?;
     let effect = pictures.effect()?;
