@@ -4,7 +4,7 @@
 //! cores of a [`session`] and reads their [`log`], [`collector`] gathers their pixels on a [`film`], [`reference`](mod@reference) and [`lockstep`] say what
 //! they should have been, [`compare`] and [`difference`] how far off they are, and [`report`] writes it down. [`job`] is
 //! all of that in one call. [`capture`] reads the packets that a core's emulator recorded. [`generators`] judges the random
-//! numbers by themselves, and [`mod@operations`] is the price list of the arithmetic, [`samples`] that of
+//! numbers by themselves, [`console`] is how programs speak, and [`mod@operations`] is the price list of the arithmetic, [`samples`] that of
 //! whole samples.
 
 pub mod arithmetic;
@@ -12,6 +12,7 @@ pub mod board;
 pub mod capture;
 pub mod collector;
 pub mod compare;
+pub mod console;
 pub mod difference;
 pub mod direct;
 mod drawing;

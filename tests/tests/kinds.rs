@@ -2,6 +2,8 @@
 //!
 //! Seeds are fixed, so each of these has one outcome. The bounds are what sampling noise allows, not what was found.
 
+#![expect(clippy::print_stdout, reason = "figures of tests, by helpers of theirs")]
+
 use host::compare::{Comparison, compare};
 use host::direct;
 use host::reference::{self, Job};

@@ -13,6 +13,7 @@ mod verify;
 use std::process::ExitCode;
 
 use clap::Parser;
+use host::console::{self, OutputError};
 use host::setup::Install;
 
 /// The project's commands
@@ -81,7 +82,20 @@ fn message(error: &anyhow::Error) -> String {
 }
 
 fn main() -> ExitCode {
-    let done = match Verb::parse() {
+    match console::arguments() {
+        Ok(verb) => run(verb).unwrap_or_else(|error| match error.downcast_ref::<OutputError>() {
+            Some(error) => error.end(),
+            None => {
+                console::note(format!("error: {}", message(&error)));
+                ExitCode::FAILURE
+            }
+        }),
+        Err(code) => code,
+    }
+}
+
+fn run(verb: Verb) -> anyhow::Result<ExitCode> {
+    match verb {
         Verb::Render(arguments) => render::run(&arguments),
         Verb::Test(arguments) => test::run(&arguments),
         Verb::QemuRun(arguments) => qemu_run::run(&arguments),
@@ -91,9 +105,5 @@ fn main() -> ExitCode {
         Verb::Size(arguments) => size::run(&arguments),
         Verb::Bench(bench) => bench::run(&bench),
         Verb::Verify(arguments) => verify::run(&arguments),
-    };
-    done.unwrap_or_else(|error| {
-        eprintln!("error: {}", message(&error));
-        ExitCode::FAILURE
-    })
+    }
 }

@@ -2,6 +2,7 @@
 
 use std::process::ExitCode;
 
+use host::console::{note, say};
 use host::interrupt;
 use host::job::options::RenderOptions;
 use host::job::{self, Finished, JobError};
@@ -21,11 +22,11 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
 pub(crate) fn outcome(end: Result<Finished, JobError>) -> anyhow::Result<ExitCode> {
     match end {
         Ok(finished) => {
-            println!("{}", finished.summary);
+            say(finished.summary)?;
             Ok(ExitCode::SUCCESS)
         }
         Err(error @ JobError::Interrupted(_)) => {
-            eprintln!("error: {error}");
+            note(format!("error: {error}"));
             Ok(ExitCode::from(interrupt::EXIT_CODE))
         }
         Err(error) => Err(error.into()),

@@ -6,6 +6,7 @@ use std::process::ExitCode;
 use anyhow::{Context, ensure};
 use host::arithmetic::Arithmetic;
 use host::board::{Board, DTCM_BUDGET, ITCM_BUDGET};
+use host::console::say;
 use host::firmware::{self, ImageSize, Recipe};
 use host::scene::{Scene, compile};
 use host::setup::{self, Toolchain, Wanted};
@@ -52,11 +53,11 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
         arguments.set_up.install(),
     )?;
     let rows = measure(&tools.firmware.context("set-up gave no compiler")?, &scene)?;
-    println!("{}", table(&rows));
     if let Some(path) = &arguments.json {
         let json = serde_json::to_string_pretty(&rows)?;
         std::fs::write(path, json + "\n").with_context(|| format!("cannot write {}", path.display()))?;
     }
+    say(table(&rows))?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 use anyhow::{Context, bail};
 use host::arithmetic::Arithmetic;
 use host::board::Board;
+use host::console::say;
 use host::firmware::{self, Recipe};
 use host::log::Level;
 use host::scene::{Scene, compile};
@@ -51,7 +52,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
             (host, firmware) => host.and(firmware),
         }
     })?;
-    println!("{}", size::table(&rows));
+    say(size::table(&rows))?;
     step("whole system", || {
         shown(cargo(&[
             "test",
@@ -70,7 +71,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
         command.env("RUSTDOCFLAGS", "--deny warnings");
         succeed(command)
     })?;
-    println!("all passed in {}", seconds(start.elapsed()));
+    say(format!("all passed in {}", seconds(start.elapsed())))?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -176,10 +177,10 @@ fn cargo(arguments: &[&str]) -> Result<Command, NoWorkspace> {
 
 /// Names a step, does it, and says how long it took.
 fn step<T>(name: &str, action: impl FnOnce() -> anyhow::Result<T>) -> anyhow::Result<T> {
-    println!("{name} ...");
+    say(format!("{name} ..."))?;
     let start = Instant::now();
     let done = action().with_context(|| format!("{name} failed"))?;
-    println!("{name}: passed in {}", seconds(start.elapsed()));
+    say(format!("{name}: passed in {}", seconds(start.elapsed())))?;
     Ok(done)
 }
 

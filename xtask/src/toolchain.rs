@@ -1,12 +1,12 @@
 //! `cargo xtask toolchain`
 
 use std::collections::BTreeMap;
-use std::io::{Write as _, stdout};
 use std::os::unix::ffi::OsStrExt;
 use std::process::ExitCode;
 
 use anyhow::Context;
 use host::board::Board;
+use host::console::put;
 use host::firmware;
 use host::setup::{self, Wanted};
 
@@ -42,9 +42,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
         script.extend(quoted(value.as_bytes()));
         script.push(b'\n');
     }
-    stdout()
-        .write_all(&script)
-        .context("cannot print the variables")?;
+    put(&script)?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -2,6 +2,7 @@
 
 use std::process::ExitCode;
 
+use host::console::say;
 use host::interrupt;
 use host::job::{self, TraceOptions};
 
@@ -15,5 +16,10 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
-    render::outcome(job::trace(&arguments.options, interrupt::watch()?))
+    let traced = job::trace(&arguments.options, interrupt::watch()?)?;
+    let said = traced.packets.iter().try_for_each(say);
+    // How the render ended comes before what could not be said of it.
+    let code = render::outcome(traced.end)?;
+    said?;
+    Ok(code)
 }

@@ -3,6 +3,7 @@
 use std::process::ExitCode;
 
 use anyhow::ensure;
+use host::console::say;
 use host::operations::Entry;
 use host::operations::record::{Record, sources_sha256};
 use host::operations::table::figure;
@@ -48,7 +49,6 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
         "there is no operation `{}`; `cargo xtask bench ops` names them all",
         op.unwrap_or_default()
     );
-    println!("{}", table(&verdicts));
     let record = Record::load(&Record::path()?)?;
     if arguments.bless {
         ensure!(
@@ -56,8 +56,10 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
             "fixedmath's sources have changed meanwhile, and this is about what they were; try again"
         );
         record.updated(&verdicts)?.store(&Record::path()?)?;
+        say(table(&verdicts))?;
         return Ok(ExitCode::SUCCESS);
     }
+    say(table(&verdicts))?;
     let faults = match depth {
         Depth::Sampled => record.exceeded(&verdicts),
         Depth::Exhaustive => record.differences(&verdicts),
@@ -68,9 +70,9 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
         faults.join("\n")
     );
     if !record.is_current()? {
-        println!(
-            "the record is about other sources: `cargo xtask verify --exhaustive --bless` brings it up to date"
-        );
+        say(
+            "the record is about other sources: `cargo xtask verify --exhaustive --bless` brings it up to date",
+        )?;
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -7,9 +7,10 @@ use std::process::ExitCode;
 use clap::Parser;
 use host::board::Board;
 use host::collector::{self, CollectError};
+use host::console::{self, note, say};
 use host::interrupt;
 use host::job::options::PictureOptions;
-use host::job::{Job, JobError, boot_blocks};
+use host::job::{Finished, Job, JobError, boot_blocks};
 use host::session::{Route, Session};
 
 /// Collects a picture from cores that are started elsewhere.
@@ -38,10 +39,17 @@ struct Arguments {
 }
 
 fn main() -> ExitCode {
+    let arguments = match console::arguments() {
+        Ok(arguments) => arguments,
+        Err(code) => return code,
+    };
     match interrupt::watch().map_err(|error| error.to_string()) {
         Err(error) => fail(&error, ExitCode::FAILURE),
-        Ok(interrupted) => match run(&Arguments::parse(), interrupted) {
-            Ok(()) => ExitCode::SUCCESS,
+        Ok(interrupted) => match run(&arguments, interrupted) {
+            Ok(finished) => match say(finished.summary) {
+                Ok(()) => ExitCode::SUCCESS,
+                Err(error) => error.end(),
+            },
             Err(error @ JobError::Interrupted(_)) => {
                 fail(&error.to_string(), ExitCode::from(interrupt::EXIT_CODE))
             }
@@ -51,11 +59,11 @@ fn main() -> ExitCode {
 }
 
 fn fail(error: &str, code: ExitCode) -> ExitCode {
-    eprintln!("error: {error}");
+    note(format!("error: {error}"));
     code
 }
 
-fn run(arguments: &Arguments, interrupted: &std::sync::atomic::AtomicBool) -> Result<(), JobError> {
+fn run(arguments: &Arguments, interrupted: &std::sync::atomic::AtomicBool) -> Result<Finished, JobError> {
     let job = Job::new(&arguments.picture)?;
     let socket: UdpSocket = collector::bind(Ipv4Addr::UNSPECIFIED, arguments.port)?;
     let port = socket.local_addr().map_err(CollectError::Socket)?.port();
@@ -66,14 +74,12 @@ fn run(arguments: &Arguments, interrupted: &std::sync::atomic::AtomicBool) -> Re
         .unwrap_or_else(|| job.out().join("boot"));
     write_boot_blocks(&folder, &session, &route(arguments, port))?;
     let (recipe, last) = (job.recipe().describe(), session.cores - 1);
-    eprintln!(
+    note(format!(
         "boot blocks: {}, core-0.boot to core-{last}.boot, for an image with {recipe}",
         folder.display()
-    );
-    eprintln!("waiting for {} cores on UDP port {port}", session.cores);
-    let finished = job.collect_elsewhere(&session, &socket, arguments.board, interrupted)?;
-    println!("{}", finished.summary);
-    Ok(())
+    ));
+    note(format!("waiting for {} cores on UDP port {port}", session.cores));
+    job.collect_elsewhere(&session, &socket, arguments.board, interrupted)
 }
 
 fn route(arguments: &Arguments, port: u16) -> Route {

@@ -5,6 +5,8 @@ use std::time::Duration;
 
 use indicatif::{HumanCount, HumanDuration, ProgressBar, ProgressStyle};
 
+use crate::console::note;
+
 /// Time between two lines where there is no terminal.
 const LINE_EVERY: Duration = Duration::from_secs(5);
 
@@ -75,7 +77,7 @@ impl Progress {
             Self::Lines(last) if state.elapsed.saturating_sub(*last) >= LINE_EVERY => {
                 *last = state.elapsed;
                 let percent = 100 * state.samples.min(state.wanted) / state.wanted.max(1);
-                eprintln!("{percent:3} % {}", state.describe());
+                note(format!("{percent:3} % {}", state.describe()));
             }
             Self::Lines(_) | Self::Silent => {}
         }
@@ -85,7 +87,7 @@ impl Progress {
     pub fn say(&self, text: &str) {
         match self {
             Self::Bar(bar) => bar.println(text),
-            Self::Lines(_) => eprintln!("{text}"),
+            Self::Lines(_) => note(text),
             Self::Silent => {}
         }
     }

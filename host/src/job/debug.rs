@@ -16,6 +16,7 @@ use super::options::PictureOptions;
 use super::{Job, JobError};
 use crate::board::Board;
 use crate::collector::{self, CollectError, Progress};
+use crate::console::note;
 use crate::firmware::{self, Image};
 use crate::fleet::{Core, Fleet, QemuFleet, bound_to_this_process};
 use crate::session::{Route, Session};
@@ -74,7 +75,7 @@ pub fn debug(options: &DebugOptions) -> Result<ExitStatus, JobError> {
     let folder = job.out.join("gdb");
     let fleet = QemuFleet::start(qemu, &[core], &folder)?;
     let console = folder.join(format!("core-{number}.log"));
-    eprintln!("the core's console: {}", console.display());
+    note(format!("the core's console: {}", console.display()));
     attend(&session, &socket, fleet, debugger)
 }
 

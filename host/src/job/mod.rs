@@ -21,6 +21,7 @@ use crate::board::Board;
 use crate::capture::CaptureError;
 use crate::collector::{self, BindError, CollectError, Collection, End, Progress};
 use crate::compare::CompareError;
+use crate::console::note;
 use crate::file::WriteError;
 use crate::firmware::{self, FirmwareError, Image, Recipe};
 use crate::fleet::{Core, Fleet, FleetError, NativeFleet, QemuFleet};
@@ -36,7 +37,7 @@ use crate::workspace::{self, NoWorkspace};
 use options::{Backend, PictureOptions, Reference, RenderOptions};
 
 pub use debug::{DebugOptions, debug};
-pub use trace::{TraceOptions, trace};
+pub use trace::{TraceOptions, Traced, trace};
 
 /// Why there is no complete picture.
 #[derive(Debug, thiserror::Error)]
@@ -261,7 +262,7 @@ impl Job {
         let wall = before + collection.elapsed;
         let memory = memory::peak(fleet.peak_memory());
         for warning in fleet.end() {
-            eprintln!("{warning}");
+            note(&warning);
         }
         self.conclude(&collection, origin, wall, memory)
     }
@@ -396,13 +397,13 @@ impl Job {
     /// The image of a board.
     fn image(&self, toolchain: &Toolchain, board: Board, log: Option<Level>) -> Result<Image, JobError> {
         let recipe = Recipe { log, ..self.recipe() };
-        eprintln!(
+        note(format!(
             "building the image for {} on {board} with {}",
             self.scene.name,
             recipe.describe()
-        );
+        ));
         let image = firmware::build(toolchain, board, &recipe)?;
-        eprintln!("{}", image.size);
+        note(&image.size);
         Ok(image)
     }
 }

@@ -13,6 +13,7 @@ use crate::arithmetic::Arithmetic;
 use crate::board::INSTRUCTIONS_PER_TICK;
 use crate::collector::{Collection, CoreRecord, End};
 use crate::compare::{Comparison, compare};
+use crate::console::note;
 use crate::picture::Estimate;
 use crate::reference::{self, cache};
 use crate::report::{self, Cost, LockstepError, Report};
@@ -86,14 +87,17 @@ impl Results<'_> {
             },
             seed: REFERENCE_SEED,
         };
-        eprintln!("comparing with double precision at {} samples per pixel", job.spp);
+        note(format!(
+            "comparing with double precision at {} samples per pixel",
+            job.spp
+        ));
         let bar = bar("reference", job.samples());
         let done = |samples| bar.set_position(samples);
         let folder = cache::folder(options.reference_cache.as_deref());
         let (estimate, origin) = cache::reference(folder.as_deref(), &self.job.scene, &job, done);
         bar.finish_and_clear();
         if let Some(warning) = origin.warning() {
-            eprintln!("{warning}");
+            note(warning);
         }
         estimate
     }

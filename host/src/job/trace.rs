@@ -20,9 +20,18 @@ pub struct TraceOptions {
     pub render: RenderOptions,
 }
 
-/// Renders a picture, records a core's packets in `core-N.pcap` among the results, and says on the terminal what is in there. A core that
-/// was started again has a file for each of its lives: `core-N.pcap`, `core-N.2.pcap` and so on.
-pub fn trace(options: &TraceOptions, interrupted: &AtomicBool) -> Result<Finished, JobError> {
+/// A render that was recorded.
+#[derive(Debug)]
+pub struct Traced {
+    /// What was recorded, for people: of a fleet that failed the packets are worth a look, too.
+    pub packets: Vec<String>,
+    /// How the render ended.
+    pub end: Result<Finished, JobError>,
+}
+
+/// Renders a picture, and records a core's packets in `core-N.pcap` among the results. A core that was started again has a file
+/// for each of its lives: `core-N.pcap`, `core-N.2.pcap` and so on.
+pub fn trace(options: &TraceOptions, interrupted: &AtomicBool) -> Result<Traced, JobError> {
     let job = Job::new(&options.render.picture)?;
     job.check_core(options.core)?;
     if options.render.backend != Backend::Qemu {
@@ -38,15 +47,15 @@ pub fn trace(options: &TraceOptions, interrupted: &AtomicBool) -> Result<Finishe
         // What an earlier trace left is not to be taken for this one's; where there is nothing, all is well.
         let _nothing = fs::remove_file(file);
     }
-    let end = job.render(&options.render, Some(&capture), interrupted);
-    // Of a fleet that failed the packets are worth a look, too.
+    let mut end = job.render(&options.render, Some(&capture), interrupted);
+    let mut packets = Vec::new();
     for file in files.iter().filter(|file| file.exists()) {
         match Tally::of(file) {
-            Ok(tally) => println!("{}", describe(options.core, file, &tally)),
-            Err(error) => return end.and_then(|_| Err(error.into())),
+            Ok(tally) => packets.push(describe(options.core, file, &tally)),
+            Err(error) => end = end.and_then(|_| Err(error.into())),
         }
     }
-    end
+    Ok(Traced { packets, end })
 }
 
 fn describe(core: u16, file: &Path, tally: &Tally) -> String {

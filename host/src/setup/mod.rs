@@ -11,6 +11,8 @@ use std::process::{Command, ExitStatus};
 pub use plan::{Apt, CommandLine, Compiler, Facts, Orders, Plan, Rustup, Toolchain, Tools, Wanted, decide};
 pub use survey::{program, survey};
 
+use crate::console::note;
+
 /// Whether set-up may change the machine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Install {
@@ -92,7 +94,7 @@ pub fn ensure(wanted: Wanted, install: Install) -> Result<Tools, SetupError> {
         if installed {
             return Err(SetupError::StillMissing(orders.missing.join("; ")));
         }
-        eprintln!("{orders}");
+        note(&orders);
         if !add_components(&orders)? {
             refused = true; // The decision is taken anew without rustup.
             continue;
@@ -111,7 +113,7 @@ fn add_components(orders: &Orders) -> Result<bool, SetupError> {
     };
     let status = run(command)?;
     if !status.success() {
-        eprintln!("set-up: rustup could not add the component; looking at Debian's packages instead");
+        note("set-up: rustup could not add the component; looking at Debian's packages instead");
     }
     Ok(status.success())
 }
@@ -127,7 +129,7 @@ fn must_succeed(command: &CommandLine) -> Result<(), SetupError> {
 }
 
 fn run(command: &CommandLine) -> Result<ExitStatus, SetupError> {
-    eprintln!("set-up: {command}");
+    note(format!("set-up: {command}"));
     let CommandLine(words) = command;
     let mut child = Command::new(&words[0]);
     child.args(&words[1..]);

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::Context;
+use host::console::{note, say};
 use host::generators::dieharder::Assessment;
 use host::generators::judgement::{self, Judgement, Streams};
 use host::generators::low_bits::{Effect, Pictures};
@@ -46,12 +47,12 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
         streams: judgement::streams(),
         low_bits: None,
     };
-    println!("{}", lattices(&found));
-    println!("{}", layout(&found.streams));
-    println!("{}", uniformity(&found.generators));
+    say(lattices(&found))?;
+    say(layout(&found.streams))?;
+    say(uniformity(&found.generators))?;
     if arguments.dieharder {
         run_dieharder(&mut found.generators, &arguments.set_up)?;
-        println!("\n{}", batteries(&found.generators));
+        say(format!("\n{}", batteries(&found.generators)))?;
     }
     if let Some(path) = &arguments.picture {
         found.low_bits = Some(draw(path)?);
@@ -71,7 +72,7 @@ fn run_dieharder(generators: &mut [Judgement], set_up: &SetUp) -> anyhow::Result
     };
     let tools = setup::ensure(wanted, set_up.install())?;
     let program = tools.dieharder.context("set-up gave no dieharder")?;
-    let rows = judgement::batteries(&program, |row| eprintln!("{row}"))?;
+    let rows = judgement::batteries(&program, |row| note(row))?;
     for (judged, rows) in generators.iter_mut().zip(rows) {
         judged.dieharder = rows;
     }
@@ -90,7 +91,7 @@ fn draw(path: &Path) -> anyhow::Result<Effect> {
     };
     let (reference, origin) = cache::reference(cache::folder(None).as_deref(), &scene, &job, |_| ());
     if let Some(warning) = origin.warning() {
-        eprintln!("{warning}");
+        note(warning);
     }
     let pictures = Pictures::render(&scene, 1024, reference);
     pictures.write(path)?;
@@ -99,7 +100,7 @@ fn draw(path: &Path) -> anyhow::Result<Effect> {
         ("upper 32 of 64", effect.full_state),
         ("lower 16 of 32", effect.low_bits),
     ] {
-        println!(
+        say(format!(
             "{bits}: bias {:+.3} % (standard error {:.3} %), rmse {:.5}, {} of {} tile tests fail, errors correlate by \
              up to {:+.4} at {:?}",
             100.0 * figures.bias.unwrap_or(f64::NAN),
@@ -109,7 +110,7 @@ fn draw(path: &Path) -> anyhow::Result<Effect> {
             figures.tiles,
             figures.correlation,
             figures.correlation_at
-        );
+        ))?;
     }
     Ok(effect)
 }

@@ -5,6 +5,7 @@ use std::process::ExitCode;
 
 use anyhow::{Context, ensure};
 use host::board::Board;
+use host::console::say;
 use host::operations::{self, plot, readme};
 use host::setup::{self, Wanted};
 
@@ -47,7 +48,6 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
         &tools.qemu.context("set-up gave no QEMU")?,
         arguments.board,
     )?;
-    print!("{}", operations::table::table(&rows));
     if let Some(path) = &arguments.json {
         let json = serde_json::to_string_pretty(&rows)?;
         std::fs::write(path, json + "\n").with_context(|| format!("cannot write {}", path.display()))?;
@@ -58,5 +58,6 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
     if arguments.bless {
         readme::bless(&rows)?;
     }
+    say(operations::table::table(&rows).trim_end())?;
     Ok(ExitCode::SUCCESS)
 }

@@ -5,6 +5,7 @@ use std::process::ExitCode;
 
 use anyhow::Context;
 use host::board::Board;
+use host::console::say;
 use host::interrupt;
 use host::job::options::Size;
 use host::samples::{self, Series};
@@ -51,10 +52,10 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
         no_install: arguments.set_up.no_install,
     };
     let rows = samples::measure(&series, interrupted)?;
-    println!("{}", samples::table(&rows));
     if let Some(path) = &arguments.json {
         let json = serde_json::to_string_pretty(&rows)?;
         std::fs::write(path, json + "\n").with_context(|| format!("cannot write {}", path.display()))?;
     }
+    say(samples::table(&rows))?;
     Ok(ExitCode::SUCCESS)
 }

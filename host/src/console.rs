@@ -1,0 +1,59 @@
+//! What a program says: its results on standard output, all else on standard error.
+//!
+//! The macros for that panic where the reader has gone or the disk is full. Here a result that cannot be written is an error
+//! like any other, and a note that cannot be written is dropped: nobody is left to be told.
+
+use std::fmt::Display;
+use std::io::{self, ErrorKind, Write};
+use std::process::ExitCode;
+
+use clap::Parser;
+
+/// The exit code where the reader of the results has gone: that of a program which the system ends for it by SIGPIPE.
+pub const CLOSED_PIPE: u8 = 128 + 13;
+
+/// Results that could not be written to standard output.
+#[derive(Debug, thiserror::Error)]
+#[error("cannot write to standard output: {0}")]
+pub struct OutputError(#[from] io::Error);
+
+impl OutputError {
+    /// Ends a program that has this error: with a note, or quietly where the reader has gone, which is no fault.
+    pub fn end(&self) -> ExitCode {
+        if self.0.kind() == ErrorKind::BrokenPipe {
+            return ExitCode::from(CLOSED_PIPE);
+        }
+        note(format!("error: {self}"));
+        ExitCode::FAILURE
+    }
+}
+
+/// Writes a line, or several, of the results.
+pub fn say(text: impl Display) -> Result<(), OutputError> {
+    put(format!("{text}\n").as_bytes())
+}
+
+/// Writes results that need not be text.
+pub fn put(bytes: &[u8]) -> Result<(), OutputError> {
+    let mut output = io::stdout().lock();
+    output.write_all(bytes)?;
+    Ok(output.flush()?)
+}
+
+/// Tells whoever watches.
+pub fn note(text: impl Display) {
+    // In one piece, so that no other program's line comes between.
+    let _nobody_watches = io::stderr().write_all(format!("{text}\n").as_bytes());
+}
+
+/// The program's arguments. What else there may be to say about them (help, the version, a fault) is said, and the program
+/// then ends with the exit code.
+pub fn arguments<P: Parser>() -> Result<P, ExitCode> {
+    P::try_parse().map_err(|answer| {
+        let said = answer.print().and_then(|()| io::stdout().flush());
+        match said {
+            Err(cause) if !answer.use_stderr() => OutputError(cause).end(),
+            _ => ExitCode::from(answer.exit_code() as u8),
+        }
+    })
+}
