@@ -6,9 +6,9 @@ use tracer::scene::{All, BlobError, Scene};
 use tracer::unit::{Plan, RUN, render};
 
 use crate::film::Film;
-use crate::lockstep;
 use crate::picture::Estimate;
 use crate::scene::CompiledScene;
+use crate::{lockstep, noise};
 
 /// The film that any fleet must end with.
 ///
@@ -37,7 +37,7 @@ pub fn film<P: Profile>(compiled: &CompiledScene, plan: &Plan) -> Result<Film, B
     Ok(film)
 }
 
-/// The film's picture with the variance that the lockstep oracle measures on the same paths, and the oracle's own.
+/// The film's picture with the variance of its samples, and the lockstep oracle's.
 ///
 /// # Panics
 /// If the plan has more units than there are ids.
@@ -46,9 +46,11 @@ pub fn estimate<P: Profile>(
     plan: &Plan,
 ) -> Result<(Estimate, Estimate), BlobError> {
     let lockstep = lockstep::render::<P>(compiled, plan, |_| ())?;
+    let picture = film::<P>(compiled, plan)?.picture();
     let fixed = Estimate {
-        picture: film::<P>(compiled, plan)?.picture(),
-        ..lockstep.clone()
+        variance: noise::variance::<P>(compiled, plan, &picture, &lockstep)?,
+        picture,
+        spp: lockstep.spp,
     };
     Ok((fixed, lockstep))
 }

@@ -26,6 +26,7 @@ pub mod job;
 pub mod lockstep;
 pub mod log;
 pub mod memory;
+pub mod noise;
 pub mod openexr;
 pub mod operations;
 pub mod picture;

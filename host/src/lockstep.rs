@@ -68,14 +68,14 @@ pub fn render<P: Profile>(
 
 /// Count, sum and sum of squares of one pixel's samples.
 #[derive(Clone, Copy, Default)]
-struct Moments {
+pub(crate) struct Moments {
     count: f64,
     sum: [f64; 3],
     squares: [f64; 3],
 }
 
 impl Moments {
-    fn add(&mut self, radiance: [f64; 3]) {
+    pub(crate) fn add(&mut self, radiance: [f64; 3]) {
         self.count += 1.0;
         for (channel, value) in radiance.into_iter().enumerate() {
             self.sum[channel] += value;
@@ -87,7 +87,7 @@ impl Moments {
         self.sum.map(|sum| sum / self.count)
     }
 
-    fn variance_of_mean(&self) -> [f64; 3] {
+    pub(crate) fn variance_of_mean(&self) -> [f64; 3] {
         let mean = self.mean();
         [0, 1, 2].map(|channel| {
             let excess = self.squares[channel] - self.count * mean[channel] * mean[channel];

@@ -17,7 +17,7 @@ use crate::console::note;
 use crate::picture::Estimate;
 use crate::reference::{self, cache};
 use crate::report::{self, Cost, LockstepError, Report};
-use crate::{difference, lockstep, openexr};
+use crate::{difference, lockstep, noise, openexr};
 
 /// Seed of the reference: any, as long as it stays the same.
 const REFERENCE_SEED: u64 = 0x5eed;
@@ -63,9 +63,8 @@ impl Results<'_> {
             Some(given) => given.clone(),
             None => self.computed_reference(),
         };
-        // Cores send sums and no squares. The oracle walks the same paths, so its noise is the picture's.
         let oracle = self.oracle();
-        let image = self.image(oracle.as_ref().and_then(|oracle| oracle.variance.clone()));
+        let image = self.image(oracle.as_ref().and_then(|oracle| self.variance(oracle)));
         let lockstep = oracle.map(|oracle| LockstepError::between(&image.picture, &oracle.picture));
         let comparison = compare(&image, &reference)?;
         Ok(Verdict {
@@ -117,6 +116,17 @@ impl Results<'_> {
         };
         bar.finish_and_clear();
         Some(rendered.expect("the compiler in this very program wrote the blob"))
+    }
+
+    /// The variance of the collected picture's pixels.
+    fn variance(&self, oracle: &Estimate) -> Option<Vec<[f64; 3]>> {
+        let (compiled, plan) = (&self.job.compiled, &self.job.plan);
+        let picture = self.collection.film.picture();
+        let found = match self.job.options.profile {
+            Arithmetic::Paper => noise::variance::<Paper>(compiled, plan, &picture, oracle),
+            Arithmetic::Precise => noise::variance::<Precise>(compiled, plan, &picture, oracle),
+        };
+        found.expect("the compiler in this very program wrote the blob")
     }
 
     /// Writes pictures and report.

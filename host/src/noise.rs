@@ -1,0 +1,129 @@
+//! The noise of a picture whose cores sent sums and no squares.
+//!
+//! The lockstep oracle walks a picture's paths in double precision, and its samples' variance is the picture's: but for paths
+//! that rounding has parted, which may have met with something rare on one side only. One path in a million that ends early in a
+//! glass ball is a large part of a pixel's variance there, and a picture that has it must not be judged by an oracle that has
+//! not. So where the two pixels differ by something that noise would feel, the picture's own samples are taken again.
+
+use rayon::prelude::*;
+use tracer::numbers::Numbers;
+use tracer::profile::Profile;
+use tracer::scene::{All, BlobError, Scene};
+use tracer::unit::{Plan, walk};
+
+use crate::lockstep::Moments;
+use crate::picture::{Estimate, Picture};
+use crate::scene::CompiledScene;
+
+/// A squared difference of this share of the variance, or less, is none that the variance would be much larger by: one parted
+/// sample adds just the square of the difference to the variance of the mean.
+const FELT: f64 = 0.01;
+
+/// The variance of every pixel of `picture`, which profile `P` rendered by `plan`, and `oracle` in lockstep with it.
+///
+/// Free-running orders take the same units; a stochastic one does not, and has no oracle.
+pub fn variance<P: Profile>(
+    compiled: &CompiledScene,
+    plan: &Plan,
+    picture: &Picture,
+    oracle: &Estimate,
+) -> Result<Option<Vec<[f64; 3]>>, BlobError> {
+    let Some(variance) = &oracle.variance else {
+        return Ok(None);
+    };
+    let pixels = picture.pixels().iter().zip(oracle.picture.pixels()).zip(variance);
+    let parted: Vec<bool> = pixels
+        .map(|((picture, oracle), variance)| match (picture, oracle) {
+            (Some(picture), Some(oracle)) => {
+                (0..3).any(|i| (picture[i] - oracle[i]).powi(2) > FELT * variance[i])
+            }
+            _ => false,
+        })
+        .collect();
+    let runs = (0..plan.runs()).into_par_iter().map_init(
+        || Scene::<P::Numbers>::decode::<All>(&compiled.blob),
+        |scene, run| {
+            let extent = plan.extent(run);
+            let first = extent.first_pixel as usize;
+            let range = first..first + usize::from(extent.pixels);
+            if !parted[range.clone()].contains(&true) {
+                return Ok(variance[range].to_vec());
+            }
+            let scene = scene.as_ref().map_err(|error| *error)?;
+            Ok(own_variance::<P>(scene, compiled.exponent, plan, run))
+        },
+    );
+    let runs: Result<Vec<_>, BlobError> = runs.collect();
+    Ok(Some(runs?.concat()))
+}
+
+/// The variance of a run's pixels by their own samples.
+fn own_variance<P: Profile>(
+    scene: &Scene<P::Numbers>,
+    exponent: i32,
+    plan: &Plan,
+    run: u32,
+) -> Vec<[f64; 3]> {
+    // Radiance is 32:32.
+    let unit = 2f64.powi(-32 - exponent);
+    let mut moments = vec![Moments::default(); usize::from(plan.extent(run).pixels)];
+    for pass in 0..plan.passes() {
+        walk::<P, All>(scene, plan, pass * plan.runs() + run, |pixel, sample| {
+            let radiance = sample.radiance.map(P::Numbers::radiance_bits);
+            moments[pixel].add(radiance.map(|bits| bits as f64 * unit));
+        });
+    }
+    moments.iter().map(Moments::variance_of_mean).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use tracer::profile::Precise;
+    use tracer::unit::Termination;
+
+    use super::*;
+    use crate::direct;
+    use crate::scene::{self, compile};
+
+    const PLAN: Plan = Plan {
+        width: 16,
+        height: 12,
+        spp: 64,
+        samples_per_unit: 64,
+        seed: 3,
+        termination: Termination::Roulette,
+        epsilon: Precise::EPSILON,
+    };
+
+    fn cornell() -> CompiledScene {
+        let text = include_str!("../../scenes/cornell.toml");
+        let scene = scene::Scene::parse("cornell.toml", text).expect("the standard scene");
+        compile(&scene, PLAN.width, PLAN.height)
+    }
+
+    /// What the picture and its oracle have in common is the oracle's; a pixel with a difference gets its own.
+    #[test]
+    fn only_parted_pixels_have_a_variance_of_their_own() {
+        let compiled = cornell();
+        let (fixed, mut oracle) = direct::estimate::<Precise>(&compiled, &PLAN).expect("it decodes");
+        let first = variance::<Precise>(&compiled, &PLAN, &fixed.picture, &oracle)
+            .expect("it decodes")
+            .expect("the oracle has one");
+        // An oracle that has missed a rare bright path, and whose variance so misses it too.
+        let mut pixels = oracle.picture.pixels().to_vec();
+        pixels[40] = Some([0.0; 3]);
+        oracle.picture = Picture::new(PLAN.width, PLAN.height, pixels);
+        let all = oracle.variance.as_mut().expect("it has one");
+        all[40] = [1e-12; 3];
+        let second = variance::<Precise>(&compiled, &PLAN, &fixed.picture, &oracle)
+            .expect("it decodes")
+            .expect("the oracle has one");
+        for channel in 0..3 {
+            assert!(
+                (second[40][channel] / first[40][channel] - 1.0).abs() < 0.01,
+                "its own samples'"
+            );
+        }
+        assert_eq!(first[100..], second[100..], "other runs are as they were");
+    }
+}
