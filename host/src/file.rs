@@ -5,6 +5,8 @@ use std::io::{self, BufWriter, Write};
 use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 
+use crate::interrupt::LastAct;
+
 /// A result that could not be written.
 #[derive(Debug, thiserror::Error)]
 #[error("cannot write {}: {cause}; give another --out or make room", path.display())]
@@ -37,6 +39,9 @@ pub fn write_whole<E: ToString>(
         .permissions(Permissions::from_mode(0o666))
         .tempfile_in(folder)
         .map_err(system)?;
+    let temporary = file.path().to_owned();
+    // If it is there no more, it has got its name.
+    let _removes = LastAct::new(move || drop(std::fs::remove_file(&temporary)));
     let mut writer = BufWriter::new(file.as_file_mut());
     write(&mut writer).map_err(|cause| error(cause.to_string()))?;
     writer.flush().map_err(system)?;

@@ -9,6 +9,7 @@ use tracer::unit::Termination;
 
 use crate::arithmetic::Arithmetic;
 use crate::board::Board;
+use crate::interrupt::LastAct;
 use crate::job::options::{Backend, End, PictureOptions, Pixels, RenderOptions, Size};
 use crate::job::{self, JobError};
 use crate::report::Report;
@@ -73,6 +74,9 @@ pub struct Row {
 /// Renders the series, and compares the boards' pictures.
 pub fn measure(series: &Series, interrupted: &AtomicBool) -> Result<Vec<Row>, SeriesError> {
     let folder = tempfile::tempdir().map_err(SeriesError::Folder)?;
+    let place = folder.path().to_owned();
+    // Whatever of it stays, it is in a folder for what may go away.
+    let _removes = LastAct::new(move || drop(std::fs::remove_dir_all(&place)));
     let mut rows: Vec<Row> = Vec::new();
     for (profile, end) in kinds() {
         let first = rows.len();

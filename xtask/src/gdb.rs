@@ -17,7 +17,7 @@ pub(crate) struct Arguments {
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
     // Without a terminal there is no Ctrl-C to stop a core with: an interruption ends this program, and its children with it.
     if stdin().is_terminal() {
-        interrupt::leave_to_child()?;
+        interrupt::leave_to_child();
     }
     let status = job::debug(&arguments.options)?;
     let code = status

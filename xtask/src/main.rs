@@ -11,9 +11,12 @@ mod trace;
 mod verify;
 
 use std::process::ExitCode;
+use std::sync::atomic::Ordering;
 
+use anyhow::Context;
 use clap::Parser;
 use host::console::{self, OutputError};
+use host::interrupt;
 use host::setup::Install;
 
 /// The project's commands
@@ -83,27 +86,35 @@ fn message(error: &anyhow::Error) -> String {
 
 fn main() -> ExitCode {
     match console::arguments() {
-        Ok(verb) => run(verb).unwrap_or_else(|error| match error.downcast_ref::<OutputError>() {
-            Some(error) => error.end(),
-            None => {
-                console::note(format!("error: {}", message(&error)));
-                ExitCode::FAILURE
-            }
-        }),
+        Ok(verb) => run(verb).unwrap_or_else(|error| failed(&error)),
         Err(code) => code,
     }
 }
 
+/// Ends a command that has this error.
+fn failed(error: &anyhow::Error) -> ExitCode {
+    if let Some(error) = error.downcast_ref::<OutputError>() {
+        return error.end();
+    }
+    console::note(format!("error: {}", message(error)));
+    if interrupt::flag().load(Ordering::Relaxed) {
+        ExitCode::from(interrupt::EXIT_CODE)
+    } else {
+        ExitCode::FAILURE
+    }
+}
+
 fn run(verb: Verb) -> anyhow::Result<ExitCode> {
+    let interrupted = interrupt::watch().context("interruptions cannot be watched for")?;
     match verb {
-        Verb::Render(arguments) => render::run(&arguments),
+        Verb::Render(arguments) => render::run(&arguments, interrupted),
         Verb::Test(arguments) => test::run(&arguments),
         Verb::QemuRun(arguments) => qemu_run::run(&arguments),
         Verb::Toolchain(arguments) => toolchain::run(&arguments),
         Verb::Gdb(arguments) => gdb::run(&arguments),
-        Verb::Trace(arguments) => trace::run(&arguments),
+        Verb::Trace(arguments) => trace::run(&arguments, interrupted),
         Verb::Size(arguments) => size::run(&arguments),
-        Verb::Bench(bench) => bench::run(&bench),
+        Verb::Bench(bench) => bench::run(&bench, interrupted),
         Verb::Verify(arguments) => verify::run(&arguments),
     }
 }

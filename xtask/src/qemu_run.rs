@@ -6,6 +6,7 @@ use std::process::{Command, ExitCode};
 use anyhow::{Context, anyhow};
 use host::board::Board;
 use host::firmware;
+use host::interrupt;
 use host::setup::{self, Wanted};
 
 use crate::SetUp;
@@ -46,9 +47,8 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
     let qemu = tools.qemu.context("set-up gave no QEMU")?;
     let mut command = Command::new(&qemu);
     command.args(board.command_line(&arguments.elf, arguments.boot.as_deref()));
-    let status = command
-        .status()
-        .with_context(|| format!("cannot start {}", qemu.display()))?;
+    let status =
+        interrupt::status(&mut command).with_context(|| format!("cannot start {}", qemu.display()))?;
     let code = status
         .code()
         .with_context(|| format!("QEMU did not end by itself: {status}"))?;

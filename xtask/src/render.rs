@@ -1,11 +1,11 @@
 //! `cargo xtask render`
 
 use std::process::ExitCode;
+use std::sync::atomic::AtomicBool;
 
-use host::console::{note, say};
-use host::interrupt;
+use host::console::say;
+use host::job;
 use host::job::options::RenderOptions;
-use host::job::{self, Finished, JobError};
 
 /// Arguments of `render`.
 #[derive(clap::Args)]
@@ -14,21 +14,8 @@ pub(crate) struct Arguments {
     options: RenderOptions,
 }
 
-pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
-    outcome(job::render(&arguments.options, interrupt::watch()?))
-}
-
-/// The exit code of a render.
-pub(crate) fn outcome(end: Result<Finished, JobError>) -> anyhow::Result<ExitCode> {
-    match end {
-        Ok(finished) => {
-            say(finished.summary)?;
-            Ok(ExitCode::SUCCESS)
-        }
-        Err(error @ JobError::Interrupted(_)) => {
-            note(format!("error: {error}"));
-            Ok(ExitCode::from(interrupt::EXIT_CODE))
-        }
-        Err(error) => Err(error.into()),
-    }
+pub(crate) fn run(arguments: &Arguments, interrupted: &AtomicBool) -> anyhow::Result<ExitCode> {
+    let finished = job::render(&arguments.options, interrupted)?;
+    say(finished.summary)?;
+    Ok(ExitCode::SUCCESS)
 }

@@ -11,6 +11,7 @@ use host::arithmetic::Arithmetic;
 use host::board::Board;
 use host::console::say;
 use host::firmware::{self, Recipe};
+use host::interrupt;
 use host::log::Level;
 use host::scene::{Scene, compile};
 use host::setup::{self, Toolchain, Wanted};
@@ -187,10 +188,8 @@ fn step<T>(name: &str, action: impl FnOnce() -> anyhow::Result<T>) -> anyhow::Re
 /// Runs a command that speaks for itself.
 fn shown(mut command: Command) -> anyhow::Result<()> {
     let program = Path::new(command.get_program()).display().to_string();
-    let status = command
-        .stdin(Stdio::null())
-        .status()
-        .with_context(|| format!("cannot start {program}"))?;
+    let status =
+        interrupt::status(command.stdin(Stdio::null())).with_context(|| format!("cannot start {program}"))?;
     if !status.success() {
         bail!("{command:?} ended with {status}");
     }
@@ -200,10 +199,7 @@ fn shown(mut command: Command) -> anyhow::Result<()> {
 /// Runs a command; what it says is shown only if it fails.
 fn succeed(mut command: Command) -> anyhow::Result<()> {
     let program = Path::new(command.get_program()).display().to_string();
-    let output = command
-        .stdin(Stdio::null())
-        .output()
-        .with_context(|| format!("cannot start {program}"))?;
+    let output = interrupt::output(&mut command).with_context(|| format!("cannot start {program}"))?;
     if !output.status.success() {
         let said = [output.stdout, output.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
         bail!(

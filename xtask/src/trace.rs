@@ -1,12 +1,10 @@
 //! `cargo xtask trace`
 
 use std::process::ExitCode;
+use std::sync::atomic::AtomicBool;
 
 use host::console::say;
-use host::interrupt;
 use host::job::{self, TraceOptions};
-
-use crate::render;
 
 /// Arguments of `trace`.
 #[derive(clap::Args)]
@@ -15,11 +13,12 @@ pub(crate) struct Arguments {
     options: TraceOptions,
 }
 
-pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
-    let traced = job::trace(&arguments.options, interrupt::watch()?)?;
+pub(crate) fn run(arguments: &Arguments, interrupted: &AtomicBool) -> anyhow::Result<ExitCode> {
+    let traced = job::trace(&arguments.options, interrupted)?;
     let said = traced.packets.iter().try_for_each(say);
     // How the render ended comes before what could not be said of it.
-    let code = render::outcome(traced.end)?;
+    let finished = traced.end?;
     said?;
-    Ok(code)
+    say(finished.summary)?;
+    Ok(ExitCode::SUCCESS)
 }

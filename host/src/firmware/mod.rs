@@ -16,6 +16,7 @@ use std::process::Command;
 use crate::arithmetic::Arithmetic;
 use crate::board::Board;
 use crate::file::write_whole;
+use crate::interrupt;
 use crate::log::Level;
 use crate::scene::SceneNeeds;
 use crate::setup::Toolchain;
@@ -142,7 +143,7 @@ pub fn build(toolchain: &Toolchain, board: Board, recipe: &Recipe) -> Result<Ima
     let lock = File::create(&lock_path).map_err(failed(&lock_path))?;
     lock.lock().map_err(failed(&lock_path))?;
     let mut command = cargo(toolchain, board, "build", recipe)?;
-    let output = command.output().map_err(failed(&toolchain.compiler.cargo))?;
+    let output = interrupt::output(&mut command).map_err(failed(&toolchain.compiler.cargo))?;
     if !output.status.success() {
         return Err(FirmwareError::Build {
             board,
@@ -194,7 +195,7 @@ pub fn build_examples(
     for name in names {
         command.args(["--example", name]);
     }
-    let output = command.output().map_err(|cause| FirmwareError::File {
+    let output = interrupt::output(&mut command).map_err(|cause| FirmwareError::File {
         path: toolchain.compiler.cargo.clone(),
         cause,
     })?;

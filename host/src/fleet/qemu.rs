@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use super::log::FleetLog;
 use super::{FleetError, LAST_LINES, RESTARTS};
 use crate::board::{self, Board};
-use crate::{memory, setup};
+use crate::{interrupt, memory, setup};
 
 /// Time between two looks at the processes' memory, which nobody can ask for once they have ended.
 const MEASURE_EVERY: Duration = Duration::from_millis(250);
@@ -23,18 +23,12 @@ const TAIL: u64 = 4096;
 
 /// Runs an image that needs nobody else on one core, and waits for its end. Its console is the output.
 pub fn run_to_end(qemu: &Path, board: Board, elf: &Path) -> io::Result<Output> {
-    bound_to_this_process(qemu)
-        .args(board.command_line(elf, None))
-        .stdin(Stdio::null())
-        .output()
+    interrupt::output(bound_to_this_process(qemu).args(board.command_line(elf, None)))
 }
 
 /// As [`run_to_end`], with a peer instead of a network: see [`Board::command_line_with_peer`].
 pub fn run_with_peer(qemu: &Path, board: Board, elf: &Path, core: u16, peer: u16) -> io::Result<Output> {
-    bound_to_this_process(qemu)
-        .args(board.command_line_with_peer(elf, core, peer))
-        .stdin(Stdio::null())
-        .output()
+    interrupt::output(bound_to_this_process(qemu).args(board.command_line_with_peer(elf, core, peer)))
 }
 
 /// A core to be started.

@@ -9,6 +9,7 @@ use std::thread;
 use serde::Serialize;
 
 use super::streams::{Width, write_words};
+use crate::interrupt::LastAct;
 
 /// Which of its tests to run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -136,6 +137,7 @@ pub fn run(
             program: program.to_owned(),
             cause,
         })?;
+    let _interrupts = LastAct::interrupts(&child);
     let rows = feed(&mut child, numbers, width, &mut tell)?;
     let status = child.wait()?;
     if !status.success() || rows.is_empty() {

@@ -25,6 +25,7 @@ use crate::console::note;
 use crate::file::WriteError;
 use crate::firmware::{self, FirmwareError, Image, Recipe};
 use crate::fleet::{Core, Fleet, FleetError, NativeFleet, QemuFleet};
+use crate::interrupt;
 use crate::log::Level;
 use crate::memory;
 use crate::openexr::{self, ReadError};
@@ -228,6 +229,7 @@ impl Job {
         board: Board,
         interrupted: &AtomicBool,
     ) -> Result<Finished, JobError> {
+        interrupt::finish_first();
         let origin = Origin {
             backend: "elsewhere",
             boards: vec![board],
@@ -284,8 +286,12 @@ impl Job {
         };
         match &collection.end {
             End::Complete => {
-                // Judging takes a while and can be interrupted; the picture is not to be lost with it.
+                // Judging takes a while and ends with an interruption; the picture is not to be lost with it.
                 results.write(None)?;
+                interrupt::end_at_once(format!(
+                    "the picture is complete, {}, and not compared",
+                    self.out.join("image.png").display()
+                ));
                 let verdict = results.judge()?;
                 let report = results.write(Some(&verdict))?;
                 let summary = results.summary(&report);
@@ -338,6 +344,7 @@ impl Job {
             Route::loopback(port)
         };
         let blocks = boot_blocks(&session, &route)?;
+        interrupt::finish_first();
         let start = Instant::now();
         let (fleet, origin) = match &tools.qemu {
             Some(qemu) => {

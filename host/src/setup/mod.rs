@@ -8,6 +8,8 @@ mod survey;
 
 use std::process::{Command, ExitStatus};
 
+use crate::interrupt;
+
 pub use plan::{Apt, CommandLine, Compiler, Facts, Orders, Plan, Rustup, Toolchain, Tools, Wanted, decide};
 pub use survey::{program, survey};
 
@@ -133,7 +135,7 @@ fn run(command: &CommandLine) -> Result<ExitStatus, SetupError> {
     let CommandLine(words) = command;
     let mut child = Command::new(&words[0]);
     child.args(&words[1..]);
-    child.status().map_err(|cause| SetupError::NotStarted {
+    interrupt::status(&mut child).map_err(|cause| SetupError::NotStarted {
         command: command.clone(),
         cause,
     })

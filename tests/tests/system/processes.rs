@@ -134,6 +134,78 @@ fn an_interruption_keeps_the_picture_and_ends_the_cores() {
     assert!(!cores.iter().any(|core| is_running(core)));
 }
 
+/// Interrupts a command, which must end within a second, with 130; returns what it said.
+fn interrupted(child: std::process::Child) -> String {
+    let start = Instant::now();
+    signal("INT", &child.id().to_string());
+    let output = child.wait_with_output().expect("its output");
+    let took = start.elapsed();
+    assert_eq!(output.status.code(), Some(130), "{}", said(&output));
+    assert!(took < Duration::from_secs(1), "{took:?}");
+    said(&output)
+}
+
+/// The reference would take hours; the picture is there already.
+#[test]
+fn an_interruption_ends_a_comparison_and_says_where_the_picture_is() {
+    let out = tempfile::tempdir().expect("a folder");
+    let long = [
+        "--reference-spp",
+        "1048576",
+        "--size",
+        "64x48",
+        "--spp",
+        "4",
+        "--backend",
+        "native",
+    ];
+    let child = render(out.path(), &[&long]).spawn().expect("it starts");
+    wait_for("the report", || out.path().join("report.json").is_file());
+    // The comparison follows.
+    std::thread::sleep(Duration::from_millis(200));
+    let said = interrupted(child);
+    for words in ["interrupted", "image.png", "not compared"] {
+        assert!(said.contains(words), "{words} in: {said}");
+    }
+    let files = fs::read_dir(out.path()).expect("the folder");
+    let names: Vec<_> = files.map(|file| file.expect("a file").file_name()).collect();
+    assert!(names.iter().any(|name| name == "image.png") && names.iter().all(|name| name != "reference.exr"));
+}
+
+#[test]
+fn an_interruption_ends_what_only_computes() {
+    for command in [
+        &["verify", "--exhaustive"][..],
+        &["bench", "generators", "--picture", "/dev/null"],
+    ] {
+        let child = xtask(command).spawn().expect("it starts");
+        std::thread::sleep(Duration::from_millis(500));
+        assert!(interrupted(child).contains("nothing was written"), "{command:?}");
+    }
+}
+
+/// The compiler's own processes end, too.
+#[test]
+fn an_interruption_ends_a_build() {
+    let target = tempfile::tempdir().expect("a folder");
+    let mut command = xtask(&["size", "--no-install"]);
+    command.env("CARGO_TARGET_DIR", target.path());
+    let child = command.spawn().expect("it starts");
+    let building = target.path().join("firmware").join("armv5te-none-eabi");
+    wait_for("the build", || building.is_dir());
+    interrupted(child);
+    let uses_it = |process: &str| {
+        let line = fs::read(format!("/proc/{process}/cmdline")).unwrap_or_default();
+        String::from_utf8_lossy(&line).contains(&*target.path().to_string_lossy())
+    };
+    wait_for("the end of the build", || {
+        let processes = fs::read_dir("/proc").expect("Linux");
+        !processes
+            .flatten()
+            .any(|entry| uses_it(&entry.file_name().to_string_lossy()))
+    });
+}
+
 #[test]
 fn no_core_outlives_a_host_that_is_killed() {
     let running = Running::start(&[]);

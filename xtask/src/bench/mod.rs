@@ -5,6 +5,7 @@ mod ops;
 mod trace;
 
 use std::process::ExitCode;
+use std::sync::atomic::AtomicBool;
 
 /// What to measure.
 #[derive(clap::Subcommand)]
@@ -22,10 +23,10 @@ pub(crate) enum Bench {
     Trace(trace::Arguments),
 }
 
-pub(crate) fn run(bench: &Bench) -> anyhow::Result<ExitCode> {
+pub(crate) fn run(bench: &Bench, interrupted: &AtomicBool) -> anyhow::Result<ExitCode> {
     match bench {
         Bench::Generators(arguments) => generators::run(arguments),
         Bench::Ops(arguments) => ops::run(arguments),
-        Bench::Trace(arguments) => trace::run(arguments),
+        Bench::Trace(arguments) => trace::run(arguments, interrupted),
     }
 }

@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::sync::atomic::AtomicBool;
 
 use anyhow::Context;
 use host::board::Board;
 use host::console::say;
-use host::interrupt;
 use host::job::options::Size;
 use host::samples::{self, Series};
 use host::workspace;
@@ -40,8 +40,7 @@ pub(crate) struct Arguments {
     set_up: SetUp,
 }
 
-pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
-    let interrupted = interrupt::watch()?;
+pub(crate) fn run(arguments: &Arguments, interrupted: &AtomicBool) -> anyhow::Result<ExitCode> {
     let series = Series {
         scene: workspace::scene(arguments.scene.as_deref())?,
         boards: arguments.boards.clone(),
