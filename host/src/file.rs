@@ -1,11 +1,17 @@
-//! Files that appear whole or not at all.
+//! Files that appear whole or not at all, also where the machine goes down meanwhile.
 
 use std::fs::{File, Permissions};
-use std::io::{self, BufWriter, Write};
+use std::io::{self, BufWriter, ErrorKind, Write};
 use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 
 use crate::interrupt::LastAct;
+
+/// What files are called that are not finished.
+pub const HALF_WRITTEN: &str = ".half-written-";
+
+/// What our folders among the user's are called.
+pub(crate) const OUR_FOLDER: &str = "fixed-point-path-tracer";
 
 /// A result that could not be written.
 #[derive(Debug, thiserror::Error)]
@@ -19,7 +25,8 @@ pub struct WriteError {
 
 /// Writes the file at `path` through `write`: first beside it under a temporary name, then renamed over it.
 ///
-/// The folder must exist. Whoever looks at `path`, also after a crash, sees the old file or the new one.
+/// The folder must exist. Whoever looks at `path`, also after a crash of the machine, sees the old file or the new one: the
+/// new one's bytes are on the disk before its name is.
 pub fn write_whole<E: ToString>(
     path: &Path,
     write: impl FnOnce(&mut BufWriter<&mut File>) -> Result<(), E>,
@@ -35,7 +42,7 @@ pub fn write_whole<E: ToString>(
     };
     // The permissions any other new file would get; the umask still applies.
     let mut file = tempfile::Builder::new()
-        .prefix(".half-written-")
+        .prefix(HALF_WRITTEN)
         .permissions(Permissions::from_mode(0o666))
         .tempfile_in(folder)
         .map_err(system)?;
@@ -46,8 +53,18 @@ pub fn write_whole<E: ToString>(
     write(&mut writer).map_err(|cause| error(cause.to_string()))?;
     writer.flush().map_err(system)?;
     drop(writer);
+    file.as_file().sync_all().map_err(system)?;
     file.persist(path).map_err(|failed| system(failed.error))?;
-    Ok(())
+    sync_folder(folder).map_err(system)
+}
+
+/// Sees to it that the names in a folder are on the disk.
+pub fn sync_folder(folder: &Path) -> io::Result<()> {
+    match File::open(folder)?.sync_all() {
+        // Some file systems cannot do that with folders, and have nothing to offer instead.
+        Err(error) if matches!(error.kind(), ErrorKind::InvalidInput | ErrorKind::Unsupported) => Ok(()),
+        synced => synced,
+    }
 }
 
 #[cfg(test)]

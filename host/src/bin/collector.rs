@@ -72,6 +72,7 @@ fn run(arguments: &Arguments, interrupted: &std::sync::atomic::AtomicBool) -> Re
         .boot_dir
         .clone()
         .unwrap_or_else(|| job.out().join("boot"));
+    job.clear()?;
     write_boot_blocks(&folder, &session, &route(arguments, port))?;
     let (recipe, last) = (job.recipe().describe(), session.cores - 1);
     note(format!(

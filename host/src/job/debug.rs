@@ -12,6 +12,7 @@ use std::process::{Command, ExitStatus};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 
+use super::folder::clear_cores;
 use super::options::PictureOptions;
 use super::{Job, JobError};
 use crate::board::Board;
@@ -72,7 +73,11 @@ pub fn debug(options: &DebugOptions) -> Result<ExitStatus, JobError> {
         debugger: Some(port),
         ..Core::new(number, options.board, &elf, boot_block)
     };
-    let folder = job.out.join("gdb");
+    let folder = job.out().join("gdb");
+    clear_cores(&folder).map_err(|cause| JobError::Out {
+        path: folder.clone(),
+        cause,
+    })?;
     let fleet = QemuFleet::start(qemu, &[core], &folder)?;
     let console = folder.join(format!("core-{number}.log"));
     note(format!("the core's console: {}", console.display()));

@@ -5,6 +5,7 @@
 //! and the picture collected; then it is judged and written.
 
 mod debug;
+mod folder;
 pub mod options;
 mod results;
 mod trace;
@@ -35,6 +36,7 @@ use crate::scene::{CompiledScene, Scene, SceneError, compile, samples_per_unit};
 use crate::session::{Route, Session};
 use crate::setup::{self, Install, SetupError, Toolchain, Tools, Wanted};
 use crate::workspace::{self, NoWorkspace};
+use folder::Folder;
 use options::{Backend, PictureOptions, Reference, RenderOptions};
 
 pub use debug::{DebugOptions, debug};
@@ -56,6 +58,19 @@ pub enum JobError {
         path: PathBuf,
         /// What the system said.
         cause: std::io::Error,
+    },
+    /// Another render has it.
+    #[error(
+        "another render is writing its results to {}: wait until it has ended, or choose another folder with --out", .0.display()
+    )]
+    Busy(PathBuf),
+    /// The folder did not take the results.
+    #[error("{why}\nthe results are in {} instead", folder.display())]
+    Elsewhere {
+        /// Why.
+        why: String,
+        /// Where they are.
+        folder: PathBuf,
     },
     /// The picture has more units than there are ids.
     #[error("the picture has more than 2^32 work units: choose a smaller --size or --spp")]
@@ -134,7 +149,7 @@ pub struct Job {
     compiled: CompiledScene,
     plan: Plan,
     reference: Option<Estimate>,
-    out: PathBuf,
+    out: Folder,
 }
 
 /// A picture that is complete, judged and written.
@@ -174,8 +189,7 @@ impl Job {
         scene.check_frame(width, height)?;
         let plan = options.plan(samples_per_unit(&scene, options.spp, options.termination.0));
         plan.units().ok_or(JobError::TooManyUnits)?;
-        let out = options.out(&scene.name)?;
-        check_writable(&out)?;
+        let out = Folder::open(options.out(&scene.name)?)?;
         let reference = match &options.reference {
             Some(Reference::File(path)) => Some(read_reference(path, (width, height))?),
             Some(Reference::None) | None => None,
@@ -193,7 +207,13 @@ impl Job {
 
     /// The folder for the results.
     pub fn out(&self) -> &Path {
-        &self.out
+        self.out.path()
+    }
+
+    /// Removes what earlier runs into that folder left of their cores. For a run that is about to start; pictures stay until
+    /// there are new ones.
+    pub fn clear(&self) -> Result<(), JobError> {
+        self.out.clear()
     }
 
     /// A new run of this job.
@@ -287,13 +307,13 @@ impl Job {
         match &collection.end {
             End::Complete => {
                 // Judging takes a while and ends with an interruption; the picture is not to be lost with it.
-                results.write(None)?;
+                results.write_here(None)?;
                 interrupt::end_at_once(format!(
                     "the picture is complete, {}, and not compared",
-                    self.out.join("image.png").display()
+                    self.out().join("image.png").display()
                 ));
                 let verdict = results.judge()?;
-                let report = results.write(Some(&verdict))?;
+                let report = results.write_here(Some(&verdict))?;
                 let summary = results.summary(&report);
                 Ok(Finished { report, summary })
             }
@@ -344,6 +364,7 @@ impl Job {
             Route::loopback(port)
         };
         let blocks = boot_blocks(&session, &route)?;
+        self.clear()?;
         interrupt::finish_first();
         let start = Instant::now();
         let (fleet, origin) = match &tools.qemu {
@@ -352,7 +373,7 @@ impl Job {
                 for core in &mut cores {
                     core.logs = options.log.is_some();
                 }
-                let fleet = QemuFleet::start(qemu, &cores, &self.out.join("cores"))?;
+                let fleet = QemuFleet::start(qemu, &cores, &self.out.path().join("cores"))?;
                 let origin = Origin {
                     backend: "qemu",
                     boards: options.boards.clone(),
@@ -431,17 +452,6 @@ fn cores(images: &[(Board, Image)], blocks: Vec<Vec<u8>>, capture: Option<&Captu
 pub fn boot_blocks(session: &Session, route: &Route) -> Result<Vec<Vec<u8>>, JobError> {
     let blocks = (0..session.cores).map(|core| session.boot_block(core, route));
     blocks.collect::<Result<_, _>>().map_err(JobError::TooLong)
-}
-
-fn check_writable(folder: &Path) -> Result<(), JobError> {
-    let probe = || {
-        std::fs::create_dir_all(folder)?;
-        tempfile::tempfile_in(folder).map(|_| ())
-    };
-    probe().map_err(|cause| JobError::Out {
-        path: folder.to_owned(),
-        cause,
-    })
 }
 
 fn read_reference(path: &Path, size: (u16, u16)) -> Result<Estimate, JobError> {

@@ -1,12 +1,14 @@
 //! What a render leaves: pictures, report, and a summary for people.
 
 use std::fmt::Write as _;
+use std::path::Path;
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
 use tracer::profile::{Paper, Precise};
 use tracer::unit::Termination;
 
+use super::folder::{self, Written};
 use super::options::{Pixels, Reference};
 use super::{Job, JobError, Origin};
 use crate::arithmetic::Arithmetic;
@@ -14,6 +16,7 @@ use crate::board::INSTRUCTIONS_PER_TICK;
 use crate::collector::{Collection, CoreRecord, End};
 use crate::compare::{Comparison, compare};
 use crate::console::note;
+use crate::file::WriteError;
 use crate::picture::Estimate;
 use crate::reference::{self, cache};
 use crate::report::{self, Cost, LockstepError, Report};
@@ -129,21 +132,34 @@ impl Results<'_> {
         found.expect("the compiler in this very program wrote the blob")
     }
 
+    /// Writes pictures and report into the folder for them. Elsewhere, they are kept but it is an error.
+    pub(super) fn write_here(&self, verdict: Option<&Verdict>) -> Result<Report, JobError> {
+        match self.write(verdict)? {
+            Written::Here(report) => Ok(report),
+            Written::Elsewhere { why, folder } => Err(JobError::Elsewhere { why, folder }),
+        }
+    }
+
+    fn write(&self, verdict: Option<&Verdict>) -> Result<Written<Report>, WriteError> {
+        self.job
+            .out
+            .replace(&folder::places(), |folder| self.write_into(folder, verdict))
+    }
+
     /// Writes pictures and report.
-    pub(super) fn write(&self, verdict: Option<&Verdict>) -> Result<Report, JobError> {
-        let out = &self.job.out;
+    fn write_into(&self, out: &Path, verdict: Option<&Verdict>) -> Result<Report, WriteError> {
         let against = verdict.and_then(|verdict| verdict.against.as_ref());
         let image = verdict.map_or_else(|| self.image(None), |verdict| verdict.image.clone());
-        image.picture.write_png(&out.join("image.png"))?;
         openexr::write(&out.join("image.exr"), &image)?;
+        image.picture.write_png(&out.join("image.png"))?;
+        let report = self.report(&image, verdict);
+        report.write(&out.join("report.json"))?;
         if let Some((reference, comparison)) = against {
             openexr::write(&out.join("reference.exr"), reference)?;
             let title = format!("{} {}", self.job.scene.name, self.job.options.profile);
             let path = out.join("difference.png");
             difference::write(&path, &title, &image.picture, &reference.picture, comparison)?;
         }
-        let report = self.report(&image, verdict);
-        report.write(&out.join("report.json"))?;
         Ok(report)
     }
 
@@ -155,10 +171,14 @@ impl Results<'_> {
         if self.collection.film.samples() == 0 {
             return Ok(format!("not a single unit came, so there is no picture{log}"));
         }
-        self.write(None)?;
+        let (folder, why) = match self.write(None)? {
+            Written::Here(_) => (self.job.out().to_owned(), String::new()),
+            Written::Elsewhere { why, folder } => (folder, format!(" because of this: {why}")),
+        };
+        let picture = folder.join("image.png");
         Ok(format!(
-            "the picture as far as it came is {}{log}",
-            self.job.out.join("image.png").display()
+            "the picture as far as it came is {}{log}{why}",
+            picture.display()
         ))
     }
 
@@ -221,7 +241,7 @@ impl Results<'_> {
     pub(super) fn summary(&self, report: &Report) -> String {
         let mut text = format!(
             "picture  {} ({}x{}, {} samples per pixel, {} cores)\n",
-            self.job.out.join("image.png").display(),
+            self.job.out().join("image.png").display(),
             report.size[0],
             report.size[1],
             report.spp,

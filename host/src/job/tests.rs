@@ -171,3 +171,33 @@ fn an_interruption_ends_it_with_its_own_error() {
     let ended = render(&options(out.path(), &["--spp", "4096"]), &INTERRUPTED);
     assert!(matches!(ended, Err(JobError::Interrupted(_))), "{ended:?}");
 }
+
+/// Whatever was there, the folder holds one render's files; and it holds the earlier ones until there are others.
+#[test]
+fn results_of_an_earlier_render_go_when_there_are_new_ones_and_not_before() {
+    let out = tempfile::tempdir().expect("a folder");
+    let is_there = |name: &str| out.path().join(name).is_file();
+    render(&options(out.path(), &[]), &RUNNING).expect("a picture");
+    let reference = out.path().join("image.exr");
+    let with = ["--reference", reference.to_str().expect("UTF-8")];
+    render(&options(out.path(), &with), &RUNNING).expect("a picture");
+    assert!(is_there("reference.exr") && is_there("difference.png"));
+    let before = std::fs::read(out.path().join("report.json")).expect("a report");
+
+    let other = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).expect("a free port");
+    let port = other.local_addr().expect("it is bound").port().to_string();
+    render(&options(out.path(), &["--port", &port]), &RUNNING).expect_err("the port is taken");
+    assert!(is_there("reference.exr") && is_there("difference.png"));
+    assert_eq!(
+        std::fs::read(out.path().join("report.json")).expect("a report"),
+        before
+    );
+
+    let first = Job::new(&options(out.path(), &[]).picture).expect("a job");
+    let second = render(&options(out.path(), &[]), &RUNNING).expect_err("the folder is taken");
+    assert!(matches!(second, JobError::Busy(_)), "{second}");
+    drop(first);
+
+    render(&options(out.path(), &["--seed", "2"]), &RUNNING).expect("a picture");
+    assert!(is_there("image.png") && !is_there("reference.exr") && !is_there("difference.png"));
+}

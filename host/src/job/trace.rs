@@ -1,6 +1,5 @@
 //! A render of which one core's packets are recorded: what `cargo xtask trace` does.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
@@ -39,14 +38,10 @@ pub fn trace(options: &TraceOptions, interrupted: &AtomicBool) -> Result<Traced,
     }
     let capture = Capture {
         core: options.core,
-        file: job.out.join(format!("core-{}.pcap", options.core)),
+        file: job.out().join(format!("core-{}.pcap", options.core)),
     };
     let lives = (0..=RESTARTS).map(|restarts| capture_of(&capture.file, restarts));
     let files: Vec<PathBuf> = lives.collect();
-    for file in &files {
-        // What an earlier trace left is not to be taken for this one's; where there is nothing, all is well.
-        let _nothing = fs::remove_file(file);
-    }
     let mut end = job.render(&options.render, Some(&capture), interrupted);
     let mut packets = Vec::new();
     for file in files.iter().filter(|file| file.exists()) {

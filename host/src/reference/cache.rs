@@ -11,7 +11,7 @@ use etcetera::base_strategy::{BaseStrategy, Xdg};
 use sha2::{Digest, Sha256};
 
 use super::{Job, render};
-use crate::file::write_whole;
+use crate::file::{OUR_FOLDER, write_whole};
 use crate::picture::{Estimate, Picture};
 use crate::scene::Scene;
 
@@ -50,7 +50,7 @@ impl Origin {
 
 /// The folder for references: the one named, or ours among the user's caches. None where the user has no home.
 pub fn folder(named: Option<&Path>) -> Option<PathBuf> {
-    let ours = || Some(Xdg::new().ok()?.cache_dir().join("fixed-point-path-tracer"));
+    let ours = || Some(Xdg::new().ok()?.cache_dir().join(OUR_FOLDER));
     named.map(Path::to_owned).or_else(ours)
 }
 

@@ -55,7 +55,7 @@ fn signal(name: &str, process: &str) {
     assert!(status.success(), "there is no process {process}");
 }
 
-fn wait_for(what: &str, mut happened: impl FnMut() -> bool) {
+pub(crate) fn wait_for(what: &str, mut happened: impl FnMut() -> bool) {
     let start = Instant::now();
     while !happened() {
         assert!(
