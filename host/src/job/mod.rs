@@ -307,13 +307,14 @@ impl Job {
         match &collection.end {
             End::Complete => {
                 // Judging takes a while and ends with an interruption; the picture is not to be lost with it.
-                results.write_here(None)?;
+                let mut report = results.write_here(None)?;
                 interrupt::end_at_once(format!(
                     "the picture is complete, {}, and not compared",
                     self.out().join("image.png").display()
                 ));
-                let verdict = results.judge()?;
-                let report = results.write_here(Some(&verdict))?;
+                if let Some(verdict) = results.judge()? {
+                    report = results.write_here(Some(&verdict))?;
+                }
                 let summary = results.summary(&report);
                 Ok(Finished { report, summary })
             }

@@ -38,8 +38,8 @@ pub(super) struct Results<'a> {
 pub(super) struct Verdict {
     /// The picture with its noise.
     image: Estimate,
-    /// With what it was compared, and how that went; none without a reference.
-    against: Option<(Estimate, Comparison)>,
+    /// With what it was compared, and how that went.
+    against: (Estimate, Comparison),
     lockstep: Option<LockstepError>,
 }
 
@@ -53,14 +53,10 @@ impl Results<'_> {
         }
     }
 
-    /// Compares with the reference and with the lockstep oracle.
-    pub(super) fn judge(&self) -> Result<Verdict, JobError> {
+    /// Compares with the reference and with the lockstep oracle, if anything is to be compared.
+    pub(super) fn judge(&self) -> Result<Option<Verdict>, JobError> {
         if self.job.options.reference == Some(Reference::None) {
-            return Ok(Verdict {
-                image: self.image(None),
-                against: None,
-                lockstep: None,
-            });
+            return Ok(None);
         }
         let reference = match &self.job.reference {
             Some(given) => given.clone(),
@@ -70,11 +66,11 @@ impl Results<'_> {
         let image = self.image(oracle.as_ref().and_then(|oracle| self.variance(oracle)));
         let lockstep = oracle.map(|oracle| LockstepError::between(&image.picture, &oracle.picture));
         let comparison = compare(&image, &reference)?;
-        Ok(Verdict {
+        Ok(Some(Verdict {
             image,
-            against: Some((reference, comparison)),
+            against: (reference, comparison),
             lockstep: lockstep.transpose()?,
-        })
+        }))
     }
 
     fn computed_reference(&self) -> Estimate {
@@ -148,7 +144,7 @@ impl Results<'_> {
 
     /// Writes pictures and report.
     fn write_into(&self, out: &Path, verdict: Option<&Verdict>) -> Result<Report, WriteError> {
-        let against = verdict.and_then(|verdict| verdict.against.as_ref());
+        let against = verdict.map(|verdict| &verdict.against);
         let image = verdict.map_or_else(|| self.image(None), |verdict| verdict.image.clone());
         openexr::write(&out.join("image.exr"), &image)?;
         image.picture.write_png(&out.join("image.png"))?;
@@ -185,7 +181,7 @@ impl Results<'_> {
     fn report(&self, image: &Estimate, verdict: Option<&Verdict>) -> Report {
         let options = &self.job.options;
         let plan = self.job.plan;
-        let error = match verdict.and_then(|verdict| verdict.against.as_ref()) {
+        let error = match verdict.map(|verdict| &verdict.against) {
             Some((reference, comparison)) => {
                 let noise_known = image.variance.is_some() && reference.variance.is_some();
                 report::Error::new(comparison, reference.spp, noise_known)
