@@ -1,6 +1,7 @@
 //! The programs as processes: signals reach them, cores end with them, exit codes pass through them, cores from elsewhere join.
 
 use std::fs;
+use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
@@ -182,6 +183,28 @@ fn an_interruption_ends_what_only_computes() {
         std::thread::sleep(Duration::from_millis(500));
         assert!(interrupted(child).contains("nothing was written"), "{command:?}");
     }
+}
+
+/// Set-up finds nothing but what would install the emulator, and that takes its time.
+#[test]
+fn an_interruption_ends_set_up() {
+    let programs = tempfile::tempdir().expect("a folder");
+    let started = programs.path().join("started");
+    for name in ["apt-get", "env", "sudo"] {
+        let script = format!(
+            "#!/bin/sh\necho $$ > '{}'\nexec /bin/sleep 60\n",
+            started.display()
+        );
+        let path = programs.path().join(name);
+        fs::write(&path, script).expect("a script");
+        fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).expect("an executable script");
+    }
+    let mut command = xtask(&["qemu-run", "Cargo.toml", "--board", "versatilepb"]);
+    let child = command.env("PATH", programs.path()).spawn().expect("it starts");
+    let process = || fs::read_to_string(&started).unwrap_or_default().trim().to_owned();
+    wait_for("the installation", || !process().is_empty());
+    interrupted(child);
+    wait_for("the end of the installation", || !is_running(&process()));
 }
 
 /// The compiler's own processes end, too.
