@@ -1,4 +1,5 @@
 //! Every board's build script. It hands the linker its scripts: `link.x` is the start-up crate's, and includes the board's `memory.x`.
+#![expect(clippy::print_stdout, reason = "a build script talks to cargo there")]
 
 use std::env;
 
