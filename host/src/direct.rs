@@ -48,7 +48,7 @@ pub fn estimate<P: Profile>(
     let lockstep = lockstep::render::<P>(compiled, plan, |_| ())?;
     let picture = film::<P>(compiled, plan)?.picture();
     let fixed = Estimate {
-        variance: noise::variance::<P>(compiled, plan, &picture, &lockstep)?,
+        variance: noise::variance::<P>(compiled, plan, &picture, &lockstep, |_| ())?,
         picture,
         spp: lockstep.spp,
     };

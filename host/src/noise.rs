@@ -21,12 +21,14 @@ const FELT: f64 = 0.01;
 
 /// The variance of every pixel of `picture`, which profile `P` rendered by `plan`, and `oracle` in lockstep with it.
 ///
-/// Free-running orders take the same units; a stochastic one does not, and has no oracle.
+/// Free-running orders take the same units; a stochastic one does not, and has no oracle. `progress` is told of samples looked
+/// after since it was last told.
 pub fn variance<P: Profile>(
     compiled: &CompiledScene,
     plan: &Plan,
     picture: &Picture,
     oracle: &Estimate,
+    progress: impl Fn(u64) + Sync,
 ) -> Result<Option<Vec<[f64; 3]>>, BlobError> {
     let Some(variance) = &oracle.variance else {
         return Ok(None);
@@ -46,6 +48,7 @@ pub fn variance<P: Profile>(
             let extent = plan.extent(run);
             let first = extent.first_pixel as usize;
             let range = first..first + usize::from(extent.pixels);
+            progress(u64::from(extent.pixels) * u64::from(plan.spp));
             if !parted[range.clone()].contains(&true) {
                 return Ok(variance[range].to_vec());
             }
@@ -106,7 +109,7 @@ mod tests {
     fn only_parted_pixels_have_a_variance_of_their_own() {
         let compiled = cornell();
         let (fixed, mut oracle) = direct::estimate::<Precise>(&compiled, &PLAN).expect("it decodes");
-        let first = variance::<Precise>(&compiled, &PLAN, &fixed.picture, &oracle)
+        let first = variance::<Precise>(&compiled, &PLAN, &fixed.picture, &oracle, |_| ())
             .expect("it decodes")
             .expect("the oracle has one");
         // An oracle that has missed a rare bright path, and whose variance so misses it too.
@@ -115,7 +118,7 @@ mod tests {
         oracle.picture = Picture::new(PLAN.width, PLAN.height, pixels);
         let all = oracle.variance.as_mut().expect("it has one");
         all[40] = [1e-12; 3];
-        let second = variance::<Precise>(&compiled, &PLAN, &fixed.picture, &oracle)
+        let second = variance::<Precise>(&compiled, &PLAN, &fixed.picture, &oracle, |_| ())
             .expect("it decodes")
             .expect("the oracle has one");
         for channel in 0..3 {

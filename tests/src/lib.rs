@@ -12,6 +12,7 @@ use host::film::Film;
 use host::firmware;
 use host::log::Level;
 use host::picture::Estimate;
+use host::reference::{self, Job};
 use host::scene::{Scene, compile};
 use host::setup::{self, Install, Toolchain, Wanted};
 use host::workspace;
@@ -65,6 +66,18 @@ pub fn film<P: Profile>(scene: &Scene, plan: &Plan) -> Film {
 pub fn estimate<P: Profile>(scene: &Scene, plan: &Plan) -> (Estimate, Estimate) {
     let compiled = compile(scene, plan.width, plan.height);
     direct::estimate::<P>(&compiled, plan).expect("a compiled scene is decoded")
+}
+
+/// The independent reference of `scene`, with roulette.
+pub fn reference(scene: &Scene, width: u16, height: u16, spp: u32) -> Estimate {
+    let job = Job {
+        width,
+        height,
+        spp,
+        termination: reference::Termination::Roulette,
+        seed: 1,
+    };
+    reference::render(scene, &job, |_| ())
 }
 
 /// The firmware's compiler, which must be there.

@@ -6,24 +6,16 @@
 
 use host::compare::{Comparison, compare};
 use host::direct;
-use host::reference::{self, Job};
 use host::scene::{Scene, compile};
 use tracer::numbers::Mixed;
 use tracer::profile::Precise;
 use tracer::scene::All;
 use tracer::unit::{RUN, render};
-use whole_system::{estimate, plan, repository};
+use whole_system::{estimate, plan, reference, repository};
 use wire::SUM_MAX;
 
 fn compared(scene: &Scene, width: u16, height: u16, spp: u32) -> Comparison {
-    let job = Job {
-        width,
-        height,
-        spp,
-        termination: reference::Termination::Roulette,
-        seed: 1,
-    };
-    let reference = reference::render(scene, &job, |_| ());
+    let reference = reference(scene, width, height, spp);
     let (precise, _) = estimate::<Precise>(scene, &plan::<Precise>(width, height, spp));
     compare(&precise, &reference).unwrap()
 }
@@ -34,7 +26,7 @@ fn no_tile_is_off(name: &str, found: &Comparison) {
     assert_eq!(found.tiles.failed().count(), 0, "{name}: {worst} beyond {bound}");
 }
 
-/// A sphere around the origin that emits 1 and reflects `reflectance` of its own `material`.
+/// A sphere around the origin that emits `emission` and is a `material` of this reflectance.
 fn room(emission: f64, material: &str, reflectance: f64) -> Scene {
     let text = format!(
         "format = 1\n[camera]\nposition = [0, 0, 0]\ndirection = [0, 0, -1]\nplane_height = 1\n\

@@ -8,25 +8,9 @@ use std::sync::OnceLock;
 
 use host::compare::{Comparison, compare};
 use host::picture::Estimate;
-use host::reference::{self, Job};
 use host::scene::{Material, Scene};
 use tracer::profile::{Paper, Precise, Profile};
-use whole_system::{cornell, estimate, film, plan, repository};
-
-fn reference(width: u16, height: u16, spp: u32) -> Estimate {
-    reference_of(&cornell(), width, height, spp)
-}
-
-fn reference_of(scene: &Scene, width: u16, height: u16, spp: u32) -> Estimate {
-    let job = Job {
-        width,
-        height,
-        spp,
-        termination: reference::Termination::Roulette,
-        seed: 1,
-    };
-    reference::render(scene, &job, |_| ())
-}
+use whole_system::{cornell, estimate, film, plan, reference, repository};
 
 fn grey(mean: [f64; 3]) -> f64 {
     mean.iter().sum::<f64>() / 3.0
@@ -52,14 +36,14 @@ fn show(name: &str, found: &Comparison) {
 /// A small picture of little noise, for the tests that look at tiles.
 fn small_reference() -> &'static Estimate {
     static REFERENCE: OnceLock<Estimate> = OnceLock::new();
-    REFERENCE.get_or_init(|| reference(64, 48, 4096))
+    REFERENCE.get_or_init(|| reference(&cornell(), 64, 48, 4096))
 }
 
 /// What a wide picture shows, tracer and reference work out each for itself.
 #[test]
 fn a_wide_picture_is_the_reference_s() {
     let (precise, _) = estimate::<Precise>(&cornell(), &plan::<Precise>(64, 36, 256));
-    let found = compare(&precise, &reference(64, 36, 1024)).unwrap();
+    let found = compare(&precise, &reference(&cornell(), 64, 36, 1024)).unwrap();
     show("precise, 16:9", &found);
     assert_eq!(found.tiles.failed().count(), 0);
 }
@@ -67,7 +51,7 @@ fn a_wide_picture_is_the_reference_s() {
 /// 25 million samples on either side: the two means' noise is 0.1 % together, half of the bound.
 #[test]
 fn precise_is_as_bright_as_double_precision() {
-    let reference = grey(reference(256, 192, 512).picture.mean().unwrap());
+    let reference = grey(reference(&cornell(), 256, 192, 512).picture.mean().unwrap());
     assert!(
         (reference - 0.3131).abs() < 0.001,
         "the reference itself: {reference}"
@@ -94,7 +78,7 @@ fn no_tile_of_precise_is_further_off_than_chance_allows() {
 fn no_tile_is_off_in_scenes_of_other_kinds() {
     for name in ["open", "tiny", "mirrors"] {
         let scene = Scene::load(&repository(&format!("tests/scenes/{name}.toml"))).unwrap();
-        let reference = reference_of(&scene, 64, 48, 1024);
+        let reference = reference(&scene, 64, 48, 1024);
         let (precise, _) = estimate::<Precise>(&scene, &plan::<Precise>(64, 48, 1024));
         let found = compare(&precise, &reference).unwrap();
         show(name, &found);

@@ -365,6 +365,12 @@ fn cores_that_failed_to_start_end_it_at_once_with_their_reason() {
     assert!(why.contains("core 1: it failed: its boot block"), "{why}");
 }
 
+/// What the collector makes of a fleet that it waits for.
+fn waited_for(session: &Session, socket: &UdpSocket, fleet: &mut Fleet) -> Collection {
+    let collection = collect(session, socket, fleet, None, &RUNNING, &mut Progress::Silent);
+    collection.expect("the socket works")
+}
+
 /// A fleet whose QEMU is a script, which finds its own folder in `$0`.
 fn scripted(folder: &std::path::Path, script: &str) -> Fleet {
     let qemu = fleet::fake_qemu(folder, script);
@@ -377,15 +383,7 @@ fn a_core_that_fails_every_time_is_given_up_soon() {
     let socket = bind(Ipv4Addr::LOCALHOST, 0).expect("a free port");
     let folder = tempfile::tempdir().expect("a folder");
     let mut fleet = scripted(folder.path(), "echo oh no; exit 4");
-    let collection = collect(
-        &session,
-        &socket,
-        &mut fleet,
-        None,
-        &RUNNING,
-        &mut Progress::Silent,
-    );
-    let collection = collection.expect("the socket works");
+    let collection = waited_for(&session, &socket, &mut fleet);
     let End::Deserted(why) = collection.end else {
         panic!("no core ever worked")
     };
@@ -393,7 +391,7 @@ fn a_core_that_fails_every_time_is_given_up_soon() {
         assert!(why.contains(words), "{words} in: {why}");
     }
     assert_eq!(collection.cores[0].restarts, ["its QEMU ended with code 4"; 3]);
-    // Silence alone would have ended it, but later.
+    // Four short lives, and no wait for anything else.
     assert!(
         collection.elapsed < Duration::from_secs(5),
         "{:?}",
@@ -417,15 +415,7 @@ fn a_core_that_is_started_again_works_on() {
         }
         work(&of_core, 0, port, Faults::default(), Arc::default())
     });
-    let collection = collect(
-        &session,
-        &socket,
-        &mut fleet,
-        None,
-        &RUNNING,
-        &mut Progress::Silent,
-    );
-    let collection = collection.expect("the socket works");
+    let collection = waited_for(&session, &socket, &mut fleet);
     assert_eq!(collection.end, End::Complete);
     assert_eq!(collection.film, whole_film(&session));
     assert_eq!(collection.packets.lost, 0);

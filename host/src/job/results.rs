@@ -121,10 +121,13 @@ impl Results<'_> {
     fn variance(&self, oracle: &Estimate) -> Option<Vec<[f64; 3]>> {
         let (compiled, plan) = (&self.job.compiled, &self.job.plan);
         let picture = self.collection.film.picture();
+        let bar = bar("noise", self.collection.film.samples());
+        let done = |samples| bar.inc(samples);
         let found = match self.job.options.profile {
-            Arithmetic::Paper => noise::variance::<Paper>(compiled, plan, &picture, oracle),
-            Arithmetic::Precise => noise::variance::<Precise>(compiled, plan, &picture, oracle),
+            Arithmetic::Paper => noise::variance::<Paper>(compiled, plan, &picture, oracle, done),
+            Arithmetic::Precise => noise::variance::<Precise>(compiled, plan, &picture, oracle, done),
         };
+        bar.finish_and_clear();
         found.expect("the compiler in this very program wrote the blob")
     }
 
@@ -372,7 +375,7 @@ fn means(report: &Report) -> String {
     }
 }
 
-/// Radiance with four or five digits that say something, however dim.
+/// Radiance to five decimals, or to four digits where those would be noughts.
 fn significant(radiance: f64) -> String {
     if radiance == 0.0 || radiance.abs() >= 0.001 {
         format!("{radiance:.5}")

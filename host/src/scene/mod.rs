@@ -211,4 +211,6 @@ impl Scene {
 }
 
 #[cfg(test)]
+mod fitting_tests;
+#[cfg(test)]
 mod tests;

@@ -153,23 +153,20 @@ pub(super) fn first_blocked_ray<'s, T>(
 ) -> Option<(String, Blocked<'s, T>)> {
     let patch = StartPatch::new(camera, width, height, 0.0);
     spheres.find_map(|(sphere, tag)| {
-        let [(nearest, _), (furthest, place)] = patch.nearest_and_furthest(sphere.centre);
-        let the_furthest = format!("the {place} ray");
-        // In part of an opaque ball rays may start: it is cut open. Nobody wants to see nothing but its inside.
-        let (lost, within) = if sphere.hollow {
-            (furthest >= sphere.radius, the_furthest.clone())
-        } else {
-            let crossed = nearest < sphere.radius && sphere.radius >= REACH;
-            (
-                is_opaque(sphere) && (furthest < sphere.radius || crossed),
-                "every ray".to_owned(),
-            )
-        };
+        let [(nearest, near_place), (furthest, far_place)] = patch.nearest_and_furthest(sphere.centre);
+        let the = |place| format!("the {place} ray");
         if furthest >= reach(sphere) {
-            Some((the_furthest, Blocked::TooFar(sphere, tag)))
-        } else {
-            lost.then_some((within, Blocked::Inside(sphere, tag)))
+            return Some((the(far_place), Blocked::TooFar(sphere, tag)));
         }
+        let inside = match sphere {
+            Sphere { hollow: true, .. } => (furthest >= sphere.radius).then(|| the(far_place)),
+            _ if !is_opaque(sphere) => None,
+            // Where rays start in a part of it, it is cut open; but nobody wants to see nothing but its inside.
+            _ if furthest < sphere.radius => Some("every ray".to_owned()),
+            // Cut open, it is crossed from side to side.
+            _ => (nearest < sphere.radius && sphere.radius >= REACH).then(|| the(near_place)),
+        };
+        inside.map(|rays| (rays, Blocked::Inside(sphere, tag)))
     })
 }
 
