@@ -35,6 +35,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
         gdb: true,
         tshark: true,
         system_linker: true,
+        system_compiler: true,
         ..Wanted::default()
     };
     let tools = step("set-up", || {

@@ -22,6 +22,8 @@ pub struct Wanted {
     pub tshark: bool,
     /// The linker of a machine without rustup.
     pub system_linker: bool,
+    /// The compiler of such a machine, with its library's source.
+    pub system_compiler: bool,
 }
 
 /// A Rust compiler found on the machine, recent enough for this workspace.
@@ -78,6 +80,8 @@ pub struct Facts {
     pub linker: Option<PathBuf>,
     /// `ld.lld`.
     pub system_linker: Option<PathBuf>,
+    /// Debian's packages have put a compiler and the source of its library into /usr, recent enough for this workspace.
+    pub system_compiler: bool,
     /// `cargo fmt` works with the cargo in use.
     pub rustfmt: bool,
     /// `cargo clippy` works with the cargo in use.
@@ -179,6 +183,7 @@ const TSHARK: &str = "Wireshark without its windows (tshark)";
 const SOURCE: &str = "a Rust compiler with the source of its library (rust-src)";
 const LINKER: &str = "a linker for the boards (rust-lld or ld.lld)";
 const SYSTEM_LINKER: &str = "the linker of machines without rustup (ld.lld)";
+const SYSTEM_COMPILER: &str = "the compiler of machines without rustup (rustc-web)";
 const RUSTFMT: &str = "cargo fmt";
 const CLIPPY: &str = "cargo clippy";
 const FIRMWARE_CLIPPY: &str = "clippy for the compiler of the boards";
@@ -190,7 +195,7 @@ struct Gap {
     packages: &'static [&'static str],
 }
 
-const GAPS: [Gap; 10] = [
+const GAPS: [Gap; 11] = [
     Gap {
         name: QEMU,
         component: None,
@@ -227,6 +232,11 @@ const GAPS: [Gap; 10] = [
         packages: &["lld"],
     },
     Gap {
+        name: SYSTEM_COMPILER,
+        component: None,
+        packages: &["rustc-web", "cargo-web", "rust-web-src"],
+    },
+    Gap {
         name: RUSTFMT,
         component: Some("rustfmt"),
         packages: &["rustfmt-web"],
@@ -255,6 +265,7 @@ pub fn decide(facts: &Facts, wanted: Wanted) -> Plan {
         SOURCE => wanted.firmware && with_source.is_none(),
         LINKER => lacks_linker,
         SYSTEM_LINKER => wanted.system_linker && facts.system_linker.is_none() && !lacks_linker,
+        SYSTEM_COMPILER => wanted.system_compiler && !facts.system_compiler,
         RUSTFMT => wanted.lints && !facts.rustfmt,
         CLIPPY => wanted.lints && !facts.clippy,
         _ => wanted.lints && wanted.firmware && lacks_second_clippy(facts),

@@ -10,6 +10,7 @@ const ALL: Wanted = Wanted {
     gdb: false,
     tshark: false,
     system_linker: false,
+    system_compiler: false,
 };
 
 fn compiler(at: &str, has_source: bool) -> Compiler {
@@ -31,6 +32,7 @@ fn fresh() -> Facts {
         compilers: vec![compiler("/rustup", false)],
         linker: Some("/rustup/rust-lld".into()),
         system_linker: None,
+        system_compiler: false,
         rustfmt: true,
         clippy: true,
         rustup: Rustup::Present,
@@ -93,6 +95,27 @@ fn a_user_gets_sudo_and_a_debian_compiler_gets_its_linker_and_lints() {
          rustc-web cargo-web rust-web-src lld rustfmt-web rust-web-clippy"
     ));
     assert!(!said.contains("rustup component"));
+}
+
+#[test]
+fn debian_s_own_compiler_is_installed_beside_rustup_s_where_that_way_is_tested() {
+    let facts = Facts {
+        rustup: Rustup::Present,
+        ..fresh()
+    };
+    let wanted = Wanted {
+        system_compiler: true,
+        ..Wanted::default()
+    };
+    let Plan::Install(orders) = decide(&facts, wanted) else {
+        panic!("it is missing")
+    };
+    assert!(orders.rustup.is_none() && orders.to_string().ends_with("rustc-web cargo-web rust-web-src"));
+    let there = Facts {
+        system_compiler: true,
+        ..facts
+    };
+    assert!(matches!(decide(&there, wanted), Plan::Ready(_)));
 }
 
 #[test]

@@ -18,9 +18,10 @@ pub fn survey() -> Facts {
     let in_use = sysroot_in_use();
     let mut sysroots: Vec<PathBuf> = in_use.iter().cloned().collect();
     let debian = PathBuf::from(DEBIAN_SYSROOT);
+    let system_compiler = has_source(&debian) && is_recent(&debian);
     let in_use_has_source = in_use.as_deref().is_some_and(has_source);
     // The cargo that runs this has already checked the version of the compiler in use; Debian's own may be years old.
-    if !in_use_has_source && !sysroots.contains(&debian) && has_source(&debian) && is_recent(&debian) {
+    if !in_use_has_source && !sysroots.contains(&debian) && system_compiler {
         sysroots.push(debian);
     }
     let system_linker = program("ld.lld");
@@ -34,6 +35,7 @@ pub fn survey() -> Facts {
             .find_map(|sysroot| bundled_linker(sysroot))
             .or_else(|| system_linker.clone()),
         system_linker,
+        system_compiler,
         rustfmt: in_use
             .as_deref()
             .is_some_and(|sysroot| sysroot.join("bin/cargo-fmt").is_file()),

@@ -212,3 +212,32 @@ fn the_runner_of_cargo_is_found_in_a_folder_with_a_space() {
         said(&output)
     );
 }
+
+/// As on a Debian where nobody has installed rustup: its own compiler, cargo and linker are all there is in PATH.
+#[test]
+fn debian_s_own_compiler_and_linker_build_the_image_that_draws_the_picture() {
+    let place = tempfile::tempdir().unwrap();
+    let [debian, ours] = ["debian", "ours"].map(|name| place.path().join(name));
+    let words = ["render", "--no-install", "--board", "versatilepb"];
+    let mut render = xtask(&[&words[..], &TINY[3..]].concat());
+    render.arg("--out").arg(&debian).env_clear();
+    render.env("PATH", "/usr/bin:/bin").env("HOME", home());
+    render.env("CARGO_TARGET_DIR", place.path().join("target"));
+    let output = render.output().unwrap();
+    assert!(output.status.success(), "{}", said(&output));
+    let output = xtask(&TINY).arg("--out").arg(&ours).output().unwrap();
+    assert!(output.status.success(), "{}", said(&output));
+    assert_eq!(sha256(&debian), sha256(&ours));
+    let images = fs::read_dir(place.path().join("target/firmware/images")).unwrap();
+    let elf = images
+        .map(|image| image.unwrap().path())
+        .find(|path| path.extension().is_some_and(|extension| extension == "elf"))
+        .unwrap();
+    let comment = String::from_utf8_lossy(&fs::read(elf).unwrap()).contains("Debian LLD");
+    assert!(comment, "the image says by what it was linked");
+}
+
+/// Where cargo keeps what it has downloaded.
+fn home() -> std::ffi::OsString {
+    std::env::var_os("HOME").expect("tests have a home")
+}
