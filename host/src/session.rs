@@ -1,10 +1,13 @@
 //! One run of a fleet: what its cores, its boot blocks and its collector agree on.
 
 use std::hash::{BuildHasher, RandomState};
+use std::num::NonZeroU8;
 
 use tracer::unit::{Plan, Termination};
-use wire::boot::{PixelOrder, TooLong};
+use wire::boot::{self, PixelOrder, TooLong};
 use wire::{Boot, Name};
+
+use crate::scene::CompiledScene;
 
 /// What all cores of one run share.
 #[derive(Clone, Debug)]
@@ -13,6 +16,8 @@ pub struct Session {
     pub id: u32,
     /// Cores in the fleet, numbered from 0.
     pub cores: u16,
+    /// The compiled camera.
+    pub camera: Vec<u8>,
     /// The compiled scene.
     pub scene: Vec<u8>,
     /// The scene's id, as cores repeat it.
@@ -71,6 +76,12 @@ impl Route {
     }
 }
 
+/// Bytes of a core's data memory that the boot block of a scene takes.
+pub const fn boot_block_len(scene: &CompiledScene) -> usize {
+    // The camera is still a part of the scene.
+    boot::encoded_len(0, scene.blob.len())
+}
+
 impl Session {
     /// A number for a new run that no other run is likely to have.
     pub fn fresh_id() -> u32 {
@@ -78,6 +89,9 @@ impl Session {
     }
 
     /// What core number `core` is told before it starts.
+    ///
+    /// # Panics
+    /// If paths are to end at depth 0.
     pub fn boot(&self, core: u16, route: &Route) -> Boot<'_> {
         Boot {
             core,
@@ -91,14 +105,17 @@ impl Session {
             seed: self.plan.seed,
             epsilon: self.plan.epsilon,
             termination: match self.plan.termination {
-                Termination::Roulette => 0,
-                Termination::Depth(depth) => depth,
+                Termination::Roulette => boot::Termination::Roulette,
+                Termination::Depth(depth) => {
+                    boot::Termination::Depth(NonZeroU8::new(depth).expect("a depth is at least 1"))
+                }
             },
             order: self.order,
             profile: self.profile,
             collector: route.collector,
             port: route.port,
             address: route.address(core),
+            camera: &self.camera,
             scene: &self.scene,
         }
     }
@@ -127,6 +144,7 @@ pub(crate) mod tests {
         Session {
             id: 0x5eed_0001,
             cores,
+            camera: b"a camera".to_vec(),
             scene_id: wire::crc32(&scene),
             scene,
             exponent: 0,
@@ -152,8 +170,8 @@ pub(crate) mod tests {
         let boot = Boot::decode(&block).expect("it decodes");
         assert_eq!(boot, session.boot(259, &Route::qemu(17893)));
         assert_eq!(
-            (boot.core, boot.cores, boot.termination, boot.samples_per_unit),
-            (259, 300, 5, 4)
+            (boot.core, boot.cores, boot.samples_per_unit, boot.camera),
+            (259, 300, 4, &session.camera[..])
         );
         assert_eq!((boot.collector, boot.address), ([10, 0, 2, 2], [10, 0, 2, 15]));
         assert_eq!(boot.scene_id(), session.scene_id);

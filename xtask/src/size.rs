@@ -1,4 +1,4 @@
-//! `cargo xtask size`
+//! `cargo xtask size`: what an image takes of a core's code memory, and with its scene of data memory (boot block, data, stacks).
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -9,6 +9,7 @@ use host::board::{Board, DTCM_BUDGET, ITCM_BUDGET};
 use host::console::say;
 use host::firmware::{self, ImageSize, Recipe};
 use host::scene::{Scene, compile};
+use host::session::boot_block_len;
 use host::setup::{self, Toolchain, Wanted};
 use host::workspace;
 use serde::Serialize;
@@ -63,15 +64,16 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
 
 /// Builds and measures the images for a scene; fails where one is over the budget.
 pub(crate) fn measure(toolchain: &Toolchain, scene: &Scene) -> anyhow::Result<Vec<Row>> {
-    // The image does not depend on the size of the picture.
-    let needs = compile(scene, 4, 3).needs;
+    // The image does not depend on the size of the picture, nor does the boot block's length.
+    let compiled = compile(scene, 4, 3);
+    let boot_block = boot_block_len(&compiled);
     let row = |(board, profile): (Board, Arithmetic)| {
         let image = firmware::build(
             toolchain,
             board,
             &Recipe {
                 profile,
-                needs,
+                needs: compiled.needs,
                 roulette: true,
                 log: None,
             },
@@ -80,7 +82,7 @@ pub(crate) fn measure(toolchain: &Toolchain, scene: &Scene) -> anyhow::Result<Ve
             board: board.name(),
             scene: scene.name.clone(),
             profile: profile.name(),
-            size: image.size,
+            size: image.size.with_boot_block(boot_block),
         };
         ensure!(
             row.size.itcm_bytes <= ITCM_BUDGET && row.data() <= DTCM_BUDGET,
@@ -99,7 +101,7 @@ pub(crate) fn measure(toolchain: &Toolchain, scene: &Scene) -> anyhow::Result<Ve
 pub(crate) fn table(rows: &[Row]) -> String {
     let mut lines = vec![format!(
         "{:12} {:10} {:8} {:>14} {:>22}",
-        "board", "scene", "profile", "code memory", "data memory (stack)"
+        "board", "scene", "profile", "code memory", "data memory (stacks)"
     )];
     lines.extend(rows.iter().map(|row| {
         let stack = row.size.stack_bytes;

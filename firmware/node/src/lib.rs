@@ -36,7 +36,7 @@ pub use worker::{Outcome, Renderer, StackUse, Worker};
 use tracer::profile::Profile;
 use tracer::scene::{Needs, Scene};
 use tracer::unit::{Plan, Sums, Termination};
-use wire::{Boot, FromCore, LastWords, MAX_PAYLOAD, Name, Report};
+use wire::{Boot, FromCore, LastWords, MAX_PAYLOAD, Name, Report, boot};
 
 /// Ticks of a [`Clock`] in a second.
 pub const TICKS_PER_SECOND: u32 = 24_000_000;
@@ -128,8 +128,8 @@ pub fn plan(boot: &Boot<'_>) -> Plan {
         samples_per_unit: boot.samples_per_unit,
         seed: boot.seed,
         termination: match boot.termination {
-            0 => Termination::Roulette,
-            depth => Termination::Depth(depth),
+            boot::Termination::Roulette => Termination::Roulette,
+            boot::Termination::Depth(depth) => Termination::Depth(depth.get()),
         },
         epsilon: boot.epsilon,
     }

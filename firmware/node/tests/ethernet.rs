@@ -7,7 +7,7 @@ use std::rc::Rc;
 use node::ethernet::{Ethernet, Frames, MAX_FRAME};
 use node::{Network, SendError};
 use proptest::prelude::*;
-use wire::boot::PixelOrder;
+use wire::boot::{PixelOrder, Termination};
 use wire::{Boot, Name};
 
 const HOST_MAC: [u8; 6] = [0x52, 0x55, 10, 0, 2, 2];
@@ -47,12 +47,13 @@ fn ethernet() -> (Ethernet<'static>, Cable) {
         spp: 4,
         seed: 0,
         epsilon: 0,
-        termination: 0,
+        termination: Termination::Roulette,
         order: PixelOrder::Leased,
         profile: Name::new("precise"),
         collector: [10, 0, 2, 2],
         port: 17893,
         address: [10, 0, 2, 15],
+        camera: b"camera",
         scene: &[],
     };
     let cable = Cable::default();

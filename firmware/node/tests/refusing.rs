@@ -3,7 +3,7 @@
 use node::{Clock, Fault, Network, SendError, StackUse};
 use tracer::profile::Precise;
 use tracer::scene::All;
-use wire::boot::PixelOrder;
+use wire::boot::{PixelOrder, Termination};
 use wire::{Boot, FromCore, LastWords, Name, Report};
 
 /// Keeps what is sent, as long as there is room for it.
@@ -49,12 +49,13 @@ fn job() -> Boot<'static> {
         spp: 4,
         seed: 0,
         epsilon: 0,
-        termination: 0,
+        termination: Termination::Roulette,
         order: PixelOrder::Leased,
         profile: Name::new("precise"),
         collector: [10, 0, 2, 2],
         port: 17893,
         address: [10, 0, 2, 15],
+        camera: &[],
         scene: b"this is no scene",
     }
 }

@@ -1,7 +1,9 @@
 //! Packets of every kind, there and back: the same text runs on a core and on the host, and must give the same bytes.
 
+use core::num::NonZeroU8;
+
 use fixedmath::random::Lcg64;
-use wire::boot::PixelOrder;
+use wire::boot::{PixelOrder, Termination};
 use wire::{
     Boot, Farewell, FromCore, Hello, MAX_PAYLOAD, MAX_PIXELS, Name, Order, PixelSums, Pixels, Report,
     SUM_MAX, ToCore,
@@ -117,7 +119,8 @@ fn reports(random: &mut Lcg64, hash: &mut Hash) -> Result<(), &'static str> {
 
 fn boot_blocks(random: &mut Lcg64, hash: &mut Hash) -> Result<(), &'static str> {
     let mut word = || random.next_fraction();
-    let mut scene = [0; 64];
+    let (mut camera, mut scene) = ([0; 37], [0; 64]);
+    camera.fill_with(|| word() as u8);
     scene.fill_with(|| word() as u8);
     let cores = 1 + word() as u16 % 1000;
     let boot = Boot {
@@ -131,12 +134,13 @@ fn boot_blocks(random: &mut Lcg64, hash: &mut Hash) -> Result<(), &'static str> 
         spp: 64 * (1 + word() % 64),
         seed: u64::from(word()) << 32 | u64::from(word()),
         epsilon: (word() >> 12) as i32,
-        termination: word() as u8,
+        termination: NonZeroU8::new(word() as u8).map_or(Termination::Roulette, Termination::Depth),
         order: PixelOrder::Stochastic,
         profile: Name::new("paper"),
         collector: word().to_be_bytes(),
         port: 17893,
         address: word().to_be_bytes(),
+        camera: &camera,
         scene: &scene,
     };
     let mut bytes = [0; 256];

@@ -19,7 +19,7 @@ unsafe extern "C" {
 /// What unused stack looks like: no address, no small number, and odd.
 const PAINT: u32 = 0xDEAD_57AC | 1;
 
-/// The boot block, as far as it may reach.
+/// The boot block, as far as it may reach. It begins at a multiple of [`wire::boot::ALIGNMENT`].
 pub fn boot_block() -> &'static [u8] {
     let (start, size) = (&raw const __boot_block, &raw const __boot_block_size);
     // SAFETY:

@@ -72,17 +72,8 @@ impl<'a> Writer<'a> {
         self.bytes(&field.to_le_bytes());
     }
 
-    pub(crate) fn u64(&mut self, field: u64) {
-        self.bytes(&field.to_le_bytes());
-    }
-
     pub(crate) fn len(&self) -> usize {
         self.len
-    }
-
-    /// What has been written so far.
-    pub(crate) fn written(&self) -> &[u8] {
-        &self.out[..self.len]
     }
 }
 

@@ -34,6 +34,7 @@ mod bytes;
 mod error;
 pub mod frame;
 pub mod from_core;
+mod layout;
 mod name;
 mod sums;
 pub mod to_core;
@@ -49,7 +50,7 @@ pub use sums::{PixelSums, SUM_MAX, SumsError};
 pub use to_core::{Order, ToCore};
 
 /// Version of everything in this crate; a core says it in HELLO, and the boot block carries it.
-pub const VERSION: u16 = 2;
+pub const VERSION: u16 = 3;
 
 /// The collector's UDP port unless a job says otherwise.
 pub const DEFAULT_PORT: u16 = 17893;

@@ -1,6 +1,8 @@
 //! Every packet, byte for byte. Buffers are filled with 0xa5 first, so a byte that an encoder forgets shows.
 
-use wire::boot::{self, PixelOrder};
+use std::num::NonZeroU8;
+
+use wire::boot::{self, PixelOrder, Termination};
 use wire::{
     Boot, Farewell, FromCore, Hello, LastWords, MAX_PAYLOAD, Name, Order, PixelSums, Pixels, Report, ToCore,
 };
@@ -221,17 +223,18 @@ fn boot_block() {
         spp: 1024,
         seed: 0x0123_4567_89AB_CDEF,
         epsilon: 16,
-        termination: 5,
+        termination: Termination::Depth(NonZeroU8::new(5).unwrap()),
         order: PixelOrder::Stochastic,
         profile: Name::new("precise"),
         collector: [10, 0, 2, 2],
         port: wire::DEFAULT_PORT,
         address: [10, 0, 2, 15],
+        camera: b"camera",
         scene: b"123456789",
     };
     #[rustfmt::skip]
     let expected = [
-        b'P', b'T', b'B', b'B', 2, 0, 80, 0,
+        b'P', b'T', b'B', b'B', 3, 0, 80, 0,
         2, 0, 4, 0,
         0x41, 0x10, 0x55, 0x5E,
         0x26, 0x39, 0xF4, 0xCB,
@@ -239,14 +242,16 @@ fn boot_block() {
         0x00, 0x04, 0, 0,
         0xEF, 0xCD, 0xAB, 0x89, 0x67, 0x45, 0x23, 0x01,
         16, 0, 0, 0,
-        5, 2, 0, 0,
+        5, 2, 0xE5, 0x45,
         b'p', b'r', b'e', b'c', b'i', b's', b'e', 0, 0, 0, 0, 0,
         10, 0, 2, 2,
         10, 0, 2, 15,
-        0xE5, 0x45, 0, 0,
-        9, 0, 0, 0,
-        // CRC-32 of the 76 bytes before, computed with Python's zlib.
-        0x7C, 0x48, 0x0A, 0xC2,
+        // CRC-32 of the camera, computed with Python's zlib as the one below.
+        0x05, 0xEE, 0x1C, 0x3B,
+        6, 0, 9, 0,
+        // CRC-32 of the 76 bytes before.
+        0xA0, 0xD1, 0x98, 0xC6,
+        b'c', b'a', b'm', b'e', b'r', b'a', 0, 0,
         b'1', b'2', b'3', b'4', b'5', b'6', b'7', b'8', b'9',
     ];
     let mut out = [0xa5; boot::MAX_LEN];

@@ -1,6 +1,6 @@
 //! What a decoder must refuse, and with which error.
 
-use wire::boot::{self, PixelOrder};
+use wire::boot::{self, PixelOrder, Termination};
 use wire::{
     Boot, DecodeError, FromCore, LastWords, MAX_PAYLOAD, Name, Order, PixelSums, Pixels, Report, SumsError,
     ToCore,
@@ -207,6 +207,10 @@ fn names_are_cut_and_kept_printable() {
     assert_eq!(Name::new("").as_str(), "");
 }
 
+/// Not a multiple of 8 bytes: zeros follow it.
+const CAMERA: &[u8; 13] = b"not a picture";
+const SCENE_AT: usize = boot::HEADER_LEN + 16;
+
 fn block(scene: &[u8]) -> Boot<'_> {
     Boot {
         core: 0,
@@ -219,12 +223,13 @@ fn block(scene: &[u8]) -> Boot<'_> {
         spp: 64,
         seed: 1,
         epsilon: 16,
-        termination: 0,
+        termination: Termination::Roulette,
         order: PixelOrder::Leased,
         profile: Name::new("paper"),
         collector: [10, 0, 2, 2],
         port: 17893,
         address: [10, 0, 2, 15],
+        camera: CAMERA,
         scene,
     }
 }
@@ -267,9 +272,14 @@ fn damaged_boot_blocks_are_refused() {
     assert_eq!(Boot::decode(&patched(out, 6, &[84])), Err(DecodeError::Range));
     for at in 8..len {
         let damaged = patched(out, at, &[out[at] ^ 0x10]);
+        let padding = boot::HEADER_LEN + CAMERA.len()..SCENE_AT;
+        let expected = match padding.contains(&at) {
+            true => DecodeError::Padding,
+            false => DecodeError::Checksum,
+        };
         assert_eq!(
             Boot::decode(&damaged),
-            Err(DecodeError::Checksum),
+            Err(expected),
             "a flipped bit in byte {at}"
         );
     }
@@ -284,7 +294,7 @@ fn damaged_boot_blocks_are_refused() {
 
 #[test]
 fn a_block_that_does_not_fit_is_not_written() {
-    let scene = [0; boot::MAX_LEN - boot::HEADER_LEN];
+    let scene = [0; boot::MAX_LEN - SCENE_AT];
     let mut out = [0; boot::MAX_LEN + 1];
     assert_eq!(block(&scene).encode(&mut out), Ok(boot::MAX_LEN));
     assert_eq!(
@@ -292,7 +302,28 @@ fn a_block_that_does_not_fit_is_not_written() {
         Err(boot::TooLong)
     );
     assert_eq!(
-        block(&[0; boot::MAX_LEN - boot::HEADER_LEN + 1]).encode(&mut out),
+        block(&[0; boot::MAX_LEN - SCENE_AT + 1]).encode(&mut out),
         Err(boot::TooLong)
     );
+}
+
+#[test]
+fn camera_and_scene_are_aligned_as_the_block_is_and_apart() {
+    let mut out = [0xa5; 200];
+    for len in 0..=CAMERA.len() {
+        let boot = Boot {
+            camera: &CAMERA[..len],
+            ..block(b"scene")
+        };
+        let end = boot.encode(&mut out).unwrap();
+        let scene_at = boot::HEADER_LEN + len.next_multiple_of(boot::ALIGNMENT);
+        assert_eq!(&out[scene_at..end], b"scene");
+        assert_eq!(&out[boot::HEADER_LEN..][..len], boot.camera);
+        assert_eq!(Boot::decode(&out), Ok(boot));
+        assert_eq!(
+            boot.scene_id(),
+            block(b"scene").scene_id(),
+            "a moved camera is the same scene"
+        );
+    }
 }

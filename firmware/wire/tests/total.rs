@@ -1,7 +1,9 @@
 //! Decoding is total, and what decodes encodes again to the same bytes.
 
+use std::num::NonZeroU8;
+
 use proptest::prelude::*;
-use wire::boot::{self, PixelOrder};
+use wire::boot::{self, PixelOrder, Termination};
 use wire::{
     Boot, Farewell, FromCore, Hello, LastWords, MAX_PAYLOAD, MAX_SAMPLES, Name, Order, PixelSums, Pixels,
     Report, SUM_MAX, ToCore,
@@ -143,7 +145,7 @@ proptest! {
     /// With the checksum put right, so that the checks behind it are reached.
     #[test]
     fn any_boot_header(mut header in prop::array::uniform32(any::<u8>()), tail in prop::collection::vec(any::<u8>(), 48)) {
-        header[..8].copy_from_slice(b"PTBB\x02\0\x50\0");
+        header[..8].copy_from_slice(b"PTBB\x03\0\x50\0");
         let mut memory = [&header[..], &tail].concat();
         let checksum = wire::crc32(&memory[..76]).to_le_bytes();
         memory[76..].copy_from_slice(&checksum);
@@ -155,13 +157,14 @@ proptest! {
     #[test]
     fn boot_blocks_return(
         core in 0u16..100, more in 1u16..100, session: u32, epoch: u16, size in (1u16..600, 1u16..600),
-        quads in (1..=MAX_SAMPLES / 4, 1u32..10_000), seed: u64, epsilon in 0..=i32::MAX, termination: u8,
-        profile in name(), port in 1u16.., scene in prop::collection::vec(any::<u8>(), 0..600),
+        quads in (1..=MAX_SAMPLES / 4, 1u32..10_000), seed: u64, epsilon in 0..=i32::MAX, depth: u8, profile in name(),
+        port in 1u16.., camera in prop::collection::vec(any::<u8>(), 0..100), scene in prop::collection::vec(any::<u8>(), 0..600),
     ) {
         let boot = Boot {
             core, cores: core + more, session, epoch, width: size.0, height: size.1, samples_per_unit: 4 * quads.0,
-            spp: 4 * quads.1, seed, epsilon, termination, order: PixelOrder::Sequential, profile,
-            collector: [10, 0, 2, 2], port, address: [10, 0, 2, 15], scene: &scene,
+            spp: 4 * quads.1, seed, epsilon, termination: NonZeroU8::new(depth).map_or(Termination::Roulette, Termination::Depth),
+            order: PixelOrder::Sequential, profile, collector: [10, 0, 2, 2], port, address: [10, 0, 2, 15],
+            camera: &camera, scene: &scene,
         };
         let mut memory = [0xa5; boot::MAX_LEN];
         prop_assert_eq!(boot.encode(&mut memory), Ok(boot.encoded_len()));

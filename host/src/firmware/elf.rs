@@ -16,12 +16,20 @@ use crate::board::{Board, DTCM_BUDGET, ITCM_BUDGET};
 pub struct ImageSize {
     /// Instruction memory: code, constants and the first values of data.
     pub itcm_bytes: u64,
-    /// Data memory without stacks: the boot block's room and data.
+    /// Data memory without stacks: data, and the boot block once it is known ([`ImageSize::with_boot_block`]).
     pub dtcm_bytes: u64,
     /// All stacks together.
     pub stack_bytes: u64,
     /// Routines of a floating-point library, of which there must be none.
     pub float_symbols: Vec<String>,
+}
+
+impl ImageSize {
+    /// The memory it takes with a scene's boot block of `len` bytes.
+    pub fn with_boot_block(mut self, len: usize) -> Self {
+        self.dtcm_bytes += len as u64;
+        self
+    }
 }
 
 impl fmt::Display for ImageSize {
@@ -70,7 +78,6 @@ pub fn measure(board: Board, elf: &[u8]) -> Result<ImageSize, String> {
         stack_bytes: stacks.end.saturating_sub(stacks.start),
         ..ImageSize::default()
     };
-    size.dtcm_bytes = symbol("__boot_block_size")?;
     for section in file.sections().filter(is_allocated) {
         let address = section.address();
         if board.dtcm().contains(&address) && !stacks.contains(&address) {

@@ -33,7 +33,7 @@ use crate::openexr::{self, ReadError};
 use crate::picture::Estimate;
 use crate::report::{self, Report};
 use crate::scene::{CompiledScene, Scene, SceneError, compile, samples_per_unit};
-use crate::session::{Route, Session};
+use crate::session::{Route, Session, boot_block_len};
 use crate::setup::{self, Install, SetupError, Toolchain, Tools, Wanted};
 use crate::workspace::{self, NoWorkspace};
 use folder::Folder;
@@ -221,6 +221,7 @@ impl Job {
         Session {
             id: Session::fresh_id(),
             cores: self.options.cores,
+            camera: Vec::new(),
             scene: self.compiled.blob.clone(),
             scene_id: self.compiled.id,
             exponent: self.compiled.exponent,
@@ -431,7 +432,8 @@ impl Job {
             self.scene.name,
             recipe.describe()
         ));
-        let image = firmware::build(toolchain, board, &recipe)?;
+        let mut image = firmware::build(toolchain, board, &recipe)?;
+        image.size = image.size.with_boot_block(boot_block_len(&self.compiled));
         note(&image.size);
         Ok(image)
     }

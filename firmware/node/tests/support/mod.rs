@@ -7,7 +7,7 @@ use std::rc::Rc;
 
 use node::{Clock, Fault, Network, Outcome, SendError, StackUse, Worker};
 use tracer::unit::Sums;
-use wire::boot::PixelOrder;
+use wire::boot::{PixelOrder, Termination};
 use wire::{Boot, FromCore, LastWords, MAX_PAYLOAD, Name, Order, Pixels, Report, ToCore};
 
 pub(crate) const SESSION: u32 = 0xCAFE_F00D;
@@ -30,12 +30,13 @@ pub(crate) fn boot(order: PixelOrder) -> Boot<'static> {
         spp: 24,
         seed: 1,
         epsilon: 16,
-        termination: 0,
+        termination: Termination::Roulette,
         order,
         profile: Name::new("precise"),
         collector: [10, 0, 2, 2],
         port: 17893,
         address: [10, 0, 2, 15],
+        camera: b"camera",
         scene: b"scene",
     }
 }
