@@ -23,6 +23,7 @@ local DEFAULT_PORT = 17893
 local HOST = 0xff
 local CORE_PORT = 1
 local CORES_PER_CHIP = 17
+local PIXEL = 15 -- bytes of sums
 
 local f = {
     padding = ProtoField.uint16("spinnaker.padding", "Padding", base.HEX),
@@ -48,7 +49,6 @@ local f = {
     data = ProtoField.bytes("spinnaker.data", "Data"),
 
     version = ProtoField.uint32("spinnaker.hello.version", "Version of the wire", base.DEC),
-    free_leases = ProtoField.uint32("spinnaker.free_leases", "Free places for leases", base.DEC),
     scene = ProtoField.uint32("spinnaker.scene", "Scene", base.HEX),
     board = ProtoField.stringz("spinnaker.hello.board", "Board"),
     profile = ProtoField.stringz("spinnaker.hello.profile", "Arithmetic profile"),
@@ -57,17 +57,16 @@ local f = {
     epoch = ProtoField.uint16("spinnaker.pixels.epoch", "Camera epoch", base.DEC),
     samples = ProtoField.uint16("spinnaker.pixels.samples", "Samples a pixel", base.DEC),
     pixels = ProtoField.uint8("spinnaker.pixels.count", "Pixels", base.DEC),
-    rejected = ProtoField.uint32("spinnaker.rejected", "Packets rejected", base.DEC),
     ticks = ProtoField.uint32("spinnaker.pixels.ticks", "24 MHz ticks", base.DEC),
     rays = ProtoField.uint32("spinnaker.pixels.rays", "Rays", base.DEC),
     sums = ProtoField.bytes("spinnaker.pixels.sums", "Sums"),
 
-    units = ProtoField.uint32("spinnaker.farewell.units", "Units done", base.DEC),
+    rejected = ProtoField.uint32("spinnaker.farewell.rejected", "Packets rejected", base.DEC),
     stack_used = ProtoField.uint32("spinnaker.farewell.stack_used", "Most stack used", base.DEC),
     stack_size = ProtoField.uint32("spinnaker.farewell.stack_size", "Size of the stack", base.DEC),
 
     address = ProtoField.uint32("spinnaker.fault.address", "Address of the instruction", base.HEX),
-    words = ProtoField.string("spinnaker.fault.words", "Last words"),
+    reason = ProtoField.string("spinnaker.fault.reason", "Reason"),
 
     first = ProtoField.uint32("spinnaker.lease.first", "First unit", base.DEC),
     count = ProtoField.uint32("spinnaker.lease.count", "Units", base.DEC),
@@ -75,34 +74,31 @@ local f = {
 spinnaker.fields = f
 
 -- What each command makes of arguments 2 and 3 (at 18 and 22) and of the data (from 26); returns words for the packet list.
+-- Tests of the crate `wire` compare names and places with its own.
 local BODIES = {
     HELLO = function(tree, packet)
         tree:add_le(f.version, packet(18, 4))
-        tree:add_le(f.free_leases, packet(22, 4))
-        tree:add_le(f.scene, packet(26, 4))
-        tree:add(f.board, packet(30, 12))
-        tree:add(f.profile, packet(42, 12))
-        return packet(30, 12):stringz() .. ", " .. packet(42, 12):stringz()
+        tree:add_le(f.scene, packet(22, 4))
+        tree:add(f.board, packet(26, 12))
+        tree:add(f.profile, packet(38, 12))
+        return packet(26, 12):stringz() .. ", " .. packet(38, 12):stringz()
     end,
     PIXELS = function(tree, packet)
         tree:add_le(f.unit, packet(18, 4))
         tree:add_le(f.epoch, packet(22, 2))
         tree:add_le(f.samples, packet(24, 2))
         tree:add_le(f.scene, packet(26, 4))
-        tree:add(f.pixels, packet(30, 1))
-        tree:add(f.free_leases, packet(31, 1))
-        tree:add_le(f.rejected, packet(32, 2))
-        tree:add_le(f.ticks, packet(34, 4))
-        tree:add_le(f.rays, packet(38, 4))
-        tree:add(f.sums, packet(42))
+        tree:add_le(f.ticks, packet(30, 4))
+        tree:add_le(f.rays, packet(34, 4))
+        tree:add(f.sums, packet(38))
+        tree:add(f.pixels, math.floor((packet:len() - 38) / PIXEL)):set_generated()
         return "unit " .. packet(18, 4):le_uint()
     end,
     FAREWELL = function(tree, packet)
-        tree:add_le(f.units, packet(18, 4))
-        tree:add_le(f.rejected, packet(22, 4))
-        tree:add_le(f.stack_used, packet(26, 4))
-        tree:add_le(f.stack_size, packet(30, 4))
-        return packet(18, 4):le_uint() .. " units"
+        tree:add_le(f.rejected, packet(18, 4))
+        tree:add_le(f.stack_used, packet(22, 4))
+        tree:add_le(f.stack_size, packet(26, 4))
+        return packet(12, 2):le_uint() .. " packets of pixels"
     end,
     FAULT = function(tree, packet)
         if packet(22, 4):le_uint() == 1 then
@@ -111,7 +107,7 @@ local BODIES = {
         if packet:len() == HEADER then
             return ""
         end
-        tree:add(f.words, packet(HEADER))
+        tree:add(f.reason, packet(HEADER))
         return packet(HEADER):string()
     end,
     LEASE = function(tree, packet)
@@ -125,8 +121,8 @@ local BODIES = {
     end,
 }
 
--- The fewest bytes of data that each command has.
-local LEAST_DATA = { HELLO = 28, PIXELS = 31, FAREWELL = 8, FAULT = 0, LEASE = 0, STOP = 0 }
+-- The fewest bytes that a packet of each command has.
+local LEAST = { HELLO = 50, PIXELS = 53, FAREWELL = 30, FAULT = 26, LEASE = 26, STOP = 26 }
 
 -- The number of the core at one end, where the other is the host.
 local function core_of(packet)
@@ -187,7 +183,7 @@ function spinnaker.dissector(packet, info, root)
     tree:add(f.core, core):set_generated()
     tree:add(f.command, command):set_generated()
     local words = "cut short"
-    if packet:len() >= HEADER + LEAST_DATA[command] then
+    if packet:len() >= LEAST[command] then
         words = BODIES[command](tree:add(packet(18), command), packet)
     end
     info.cols.protocol = "SpiNNaker"

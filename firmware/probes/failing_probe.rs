@@ -8,7 +8,7 @@ use node::ethernet::Ethernet;
 use node::{Network, SendError, Words};
 use runtime::image::{ImageNeeds, ImageProfile};
 use runtime::{Board, Exit, die, memory};
-use wire::{Boot, FromCore, Name, Report};
+use wire::{Boot, FromCore, Message, Name};
 
 /// Units that core 0 sends before it fails.
 const GOOD_UNITS: u32 = 3;
@@ -42,7 +42,7 @@ struct Failing<N> {
 impl<N: Network> Network for Failing<N> {
     fn send(&mut self, payload: &[u8]) -> Result<(), SendError> {
         let packet = FromCore::decode(payload);
-        if packet.is_ok_and(|packet| matches!(packet.report, Report::Pixels(_))) {
+        if packet.is_ok_and(|packet| matches!(packet.message, Message::Pixels(_))) {
             match self.good_units {
                 0 => fail(),
                 _ => self.good_units -= 1,

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use pcap_parser::traits::PcapReaderIterator;
 use pcap_parser::{LegacyPcapReader, PcapBlockOwned, PcapError};
 use smoltcp::wire::{EthernetFrame, EthernetProtocol, IpProtocol, Ipv4Packet, UdpPacket};
-use wire::{FromCore, Order, Report, ToCore};
+use wire::{Command, FromCore, Message, ToCore};
 
 /// Room for the largest record that QEMU writes: 64 KiB and its header.
 const BUFFER: usize = 1 << 17;
@@ -106,8 +106,8 @@ impl Tally {
         };
         self.port = Some(port);
         match (FromCore::decode(payload), ToCore::decode(payload)) {
-            (Ok(packet), _) => self.from_core.count(report_name(&packet.report)),
-            (_, Ok(packet)) => self.to_core.count(order_name(packet.order)),
+            (Ok(packet), _) => self.from_core.count(message_name(&packet.message)),
+            (_, Ok(packet)) => self.to_core.count(command_name(packet.command)),
             _ => self.others += 1,
         }
     }
@@ -123,19 +123,19 @@ fn datagram(frame: &[u8]) -> Option<(u16, &[u8])> {
     Some((datagram.dst_port(), datagram.payload()))
 }
 
-fn report_name(report: &Report<'_>) -> &'static str {
-    match report {
-        Report::Hello(_) => "HELLO",
-        Report::Pixels(_) => "PIXELS",
-        Report::Farewell(_) => "FAREWELL",
-        Report::Fault(_) => "FAULT",
+fn message_name(message: &Message<'_>) -> &'static str {
+    match message {
+        Message::Hello(_) => "HELLO",
+        Message::Pixels(_) => "PIXELS",
+        Message::Farewell(_) => "FAREWELL",
+        Message::Fault(_) => "FAULT",
     }
 }
 
-fn order_name(order: Order) -> &'static str {
-    match order {
-        Order::Lease { .. } => "LEASE",
-        Order::Stop => "STOP",
+fn command_name(command: Command) -> &'static str {
+    match command {
+        Command::Lease { .. } => "LEASE",
+        Command::Stop => "STOP",
     }
 }
 
@@ -158,7 +158,7 @@ mod tests {
         let stop = ToCore {
             core: 0,
             session: 7,
-            order: Order::Stop,
+            command: Command::Stop,
         };
         let mut payload = [0; wire::MAX_PAYLOAD];
         let len = stop.encode(&mut payload);

@@ -172,6 +172,8 @@ pub struct LockstepError {
 pub struct Core {
     /// Its number.
     pub core: u16,
+    /// Its board, as it says itself: in a fleet of several.
+    pub board: Option<String>,
     /// Units that it was first to deliver.
     pub units: u64,
     /// Ticks of its 24 MHz clock spent rendering.
@@ -180,6 +182,8 @@ pub struct Core {
     pub stack_bytes: Option<u32>,
     /// Stack it has.
     pub stack_size: Option<u32>,
+    /// Packets that it did not take for its own.
+    pub rejected: Option<u32>,
     /// Times it was started again after it had failed.
     pub restarts: usize,
     /// The last thing that went wrong with it, if anything: how it ended, or why it was started again.

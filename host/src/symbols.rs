@@ -6,7 +6,7 @@ use std::fmt;
 use std::path::Path;
 
 use addr2line::Loader;
-use wire::LastWords;
+use wire::FaultInfo;
 
 use crate::workspace;
 
@@ -69,8 +69,8 @@ impl Place {
 }
 
 /// A core's last words, and the function in its image that they came from, where that can be found out.
-pub fn explained(elf: &Path, fault: &LastWords<'_>) -> String {
-    let words = fault.words;
+pub fn explained(elf: &Path, fault: &FaultInfo<'_>) -> String {
+    let words = fault.reason;
     let found = match fault.address {
         Some(address) => Place::of(elf, address).map(|place| format!("{words}, in {place}")),
         None => Place::of_panic(elf, words)

@@ -24,7 +24,7 @@ pub mod ethernet;
 mod fault;
 mod leases;
 pub mod log;
-mod order;
+mod unit_source;
 mod words;
 mod worker;
 
@@ -36,7 +36,7 @@ pub use worker::{Outcome, Renderer, StackUse, Worker};
 use tracer::profile::Profile;
 use tracer::scene::{Needs, Scene};
 use tracer::unit::{Plan, Sums, Termination};
-use wire::{Boot, FromCore, LastWords, MAX_PAYLOAD, Name, Report, boot};
+use wire::{Boot, FaultInfo, FromCore, MAX_PAYLOAD, Message, Name, boot};
 
 /// Ticks of a [`Clock`] in a second.
 pub const TICKS_PER_SECOND: u32 = 24_000_000;
@@ -104,15 +104,15 @@ pub fn last_words(
     boot: &Boot<'_>,
     network: &mut dyn Network,
     address: Option<u32>,
-    words: &str,
+    reason: &str,
 ) -> Result<(), SendError> {
     let mut packet = [0; MAX_PAYLOAD];
-    let report = Report::Fault(LastWords { address, words });
+    let message = Message::Fault(FaultInfo { address, reason });
     let len = FromCore {
         core: boot.core,
         seq: 0,
         session: boot.session,
-        report,
+        message,
     }
     .encode(&mut packet);
     network.send(&packet[..len])

@@ -1,11 +1,11 @@
 //! Last words, put together where there is no room for formatting.
 
 use heapless::String;
-use wire::MAX_DATA;
+use wire::MAX_REASON;
 
 /// A text put together without `core::fmt`, which would cost kilobytes of code memory. What does not fit is cut.
 #[derive(Debug)]
-pub struct Words(String<MAX_DATA>);
+pub struct Words(String<MAX_REASON>);
 
 /// Never inlined: last words are seldom said, and each of their parts in few instructions.
 impl Words {
@@ -20,7 +20,7 @@ impl Words {
     /// Appends a text.
     #[inline(never)]
     pub fn and(&mut self, text: &str) -> &mut Self {
-        let room = MAX_DATA - self.0.len();
+        let room = MAX_REASON - self.0.len();
         let fitting = text.get(..text.floor_char_boundary(room)).unwrap_or_default();
         // It fits: it has just been cut to the room there is.
         let _ = self.0.push_str(fitting);

@@ -2,12 +2,11 @@
 
 use tracer::unit::{Plan, Sums};
 use wire::{
-    Boot, Farewell, FromCore, Hello, MAX_PAYLOAD, Name, Order as Command, PixelSums, Pixels, Report, ToCore,
-    VERSION,
+    Boot, Command, Farewell, FromCore, Hello, MAX_PAYLOAD, Message, Name, PixelSums, Pixels, ToCore, VERSION,
 };
 
 use crate::leases::Leases;
-use crate::order::Order;
+use crate::unit_source::UnitSource;
 use crate::{Clock, Fault, Network, TICKS_PER_SECOND, log};
 
 /// A core that has just become idle asks for work after this time again, and then after twice the time before...
@@ -73,7 +72,7 @@ pub struct Worker<'a> {
     renderer: &'a mut dyn Renderer,
     network: &'a mut dyn Network,
     clock: &'a mut dyn Clock,
-    order: Order,
+    source: UnitSource,
     leases: Leases,
     done: u32,
     rejected: u32,
@@ -92,7 +91,7 @@ impl<'a> Worker<'a> {
         clock: &'a mut dyn Clock,
     ) -> Result<Self, Fault> {
         let units = plan.units().ok_or(Fault::Units)?;
-        let order = Order::new(boot, plan.runs(), units);
+        let source = UnitSource::new(boot, plan.runs(), units);
         let (scene, leases) = (boot.scene_id(), Leases::default());
         let (done, rejected, stopped) = (0, 0, false);
         Ok(Self {
@@ -104,7 +103,7 @@ impl<'a> Worker<'a> {
             renderer,
             network,
             clock,
-            order,
+            source,
             leases,
             done,
             rejected,
@@ -123,21 +122,21 @@ impl<'a> Worker<'a> {
             self.scene,
             self.units
         );
-        self.say_hello()?;
+        self.send_hello()?;
         let (mut last_hello, mut pause) = (self.clock.ticks(), FIRST_PAUSE);
         loop {
             self.receive();
             if self.stopped {
-                return self.say_farewell(stack());
+                return self.send_farewell(stack());
             }
-            if let Some(unit) = self.order.next(&mut self.leases) {
+            if let Some(unit) = self.source.next(&mut self.leases) {
                 self.work(unit)?;
                 pause = FIRST_PAUSE;
                 continue;
             }
             let since = self.clock.ticks().wrapping_sub(last_hello);
             if since >= pause {
-                self.say_hello()?;
+                self.send_hello()?;
                 last_hello = self.clock.ticks();
                 pause = (2 * pause).min(LONGEST_PAUSE);
             } else {
@@ -162,13 +161,11 @@ impl<'a> Worker<'a> {
         let extent = self.plan.extent(unit);
         let sums =
             PixelSums::new(&sums[..usize::from(extent.pixels).min(sums.len())]).map_err(Fault::Sums)?;
-        self.say(Report::Pixels(Pixels {
+        self.send(Message::Pixels(Pixels {
             unit,
             epoch: self.boot.epoch,
             samples: extent.samples,
             scene: self.scene,
-            free_leases: self.free_leases(),
-            rejected: self.all_rejected() as u16,
             ticks,
             rays,
             sums,
@@ -192,7 +189,11 @@ impl<'a> Worker<'a> {
 
     /// Does what a packet says; false where it is not for this core now.
     fn obey(&mut self, payload: &[u8]) -> bool {
-        let ToCore { core, session, order } = match ToCore::decode(payload) {
+        let ToCore {
+            core,
+            session,
+            command,
+        } = match ToCore::decode(payload) {
             Ok(packet) => packet,
             Err(error) => {
                 log::warn!("packet rejected: {=str}", error.as_str());
@@ -207,19 +208,18 @@ impl<'a> Worker<'a> {
             );
             return false;
         }
-        match order {
+        match command {
             Command::Lease { number, first, count } => {
                 let last = first + (count - 1);
-                let wanted = matches!(self.order, Order::Leased) && last < self.units;
+                let wanted = matches!(self.source, UnitSource::Leased) && last < self.units;
                 let taken = wanted && self.leases.take(number, first, last).is_ok();
                 if !taken {
                     log::warn!(
-                        "lease {=u16} refused: units {=u32} to {=u32} of {=u32}, with room for {=u8} leases",
+                        "lease {=u16} refused: units {=u32} to {=u32} of {=u32}",
                         number,
                         first,
                         last,
-                        self.units,
-                        self.free_leases()
+                        self.units
                     );
                 }
                 taken
@@ -232,18 +232,17 @@ impl<'a> Worker<'a> {
         }
     }
 
-    fn say_hello(&mut self) -> Result<(), Fault> {
-        log::debug!("HELLO, with room for {=u8} leases", self.free_leases());
-        self.say(Report::Hello(Hello {
+    fn send_hello(&mut self) -> Result<(), Fault> {
+        log::debug!("HELLO");
+        self.send(Message::Hello(Hello {
             version: VERSION,
-            free_leases: self.free_leases(),
             scene: self.scene,
             board: self.board,
             profile: self.boot.profile,
         }))
     }
 
-    fn say_farewell(&mut self, stack: StackUse) -> Result<Outcome, Fault> {
+    fn send_farewell(&mut self, stack: StackUse) -> Result<Outcome, Fault> {
         let outcome = Outcome {
             units: self.done,
             rejected: self.all_rejected(),
@@ -257,8 +256,7 @@ impl<'a> Worker<'a> {
             stack.size
         );
         for _ in 0..FAREWELLS {
-            self.say(Report::Farewell(Farewell {
-                units: outcome.units,
+            self.send(Message::Farewell(Farewell {
                 rejected: outcome.rejected,
                 stack_used: stack.used,
                 stack_size: stack.size,
@@ -268,7 +266,7 @@ impl<'a> Worker<'a> {
     }
 
     #[inline(never)]
-    fn say(&mut self, report: Report<'_>) -> Result<(), Fault> {
+    fn send(&mut self, message: Message<'_>) -> Result<(), Fault> {
         let mut packet = [0; MAX_PAYLOAD];
         // One PIXELS packet a unit, so the units done are the packet's number.
         let seq = self.done as u16;
@@ -276,7 +274,7 @@ impl<'a> Worker<'a> {
             core: self.boot.core,
             seq,
             session: self.boot.session,
-            report,
+            message,
         }
         .encode(&mut packet);
         for failed in 0..SEND_TRIES {
@@ -293,14 +291,6 @@ impl<'a> Worker<'a> {
             self.network.wait(SEND_REST);
         }
         Err(Fault::Network)
-    }
-
-    /// Leases there is room for: none where the core finds its own work.
-    fn free_leases(&self) -> u8 {
-        match self.order {
-            Order::Leased => self.leases.free(),
-            _ => 0,
-        }
     }
 
     fn all_rejected(&self) -> u32 {

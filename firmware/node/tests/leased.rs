@@ -5,7 +5,7 @@ mod support;
 use node::{Fault, Outcome, TICKS_PER_SECOND};
 use support::{RENDER_TICKS, SESSION, STACK, World, boot, packet, run};
 use wire::boot::PixelOrder;
-use wire::{Farewell, Hello, MAX_PAYLOAD, Name, Order, Report};
+use wire::{Command, Farewell, Hello, MAX_PAYLOAD, Message, Name};
 
 /// A host that leases units `first..last` on the first HELLO and says STOP on the next.
 fn lease_once(first: u32, count: u32) -> impl FnMut(&mut World, support::Said) {
@@ -13,7 +13,7 @@ fn lease_once(first: u32, count: u32) -> impl FnMut(&mut World, support::Said) {
     move |world, said| {
         if said.is_hello() {
             if leased {
-                world.post(Order::Stop)
+                world.post(Command::Stop)
             } else {
                 world.lease(1, first, count)
             }
@@ -37,14 +37,12 @@ fn a_lease_is_worked_through_and_stop_is_answered() {
 
     let hello = Hello {
         version: wire::VERSION,
-        free_leases: 4,
         scene: wire::crc32(b"scene"),
         board: Name::new("fake"),
         profile: Name::new("precise"),
     };
-    assert_eq!(world.said[0].report, Report::Hello(hello));
-    let farewell = Report::Farewell(Farewell {
-        units: 3,
+    assert_eq!(world.said[0].message, Message::Hello(hello));
+    let farewell = Message::Farewell(Farewell {
         rejected: 0,
         stack_used: 321,
         stack_size: 4096,
@@ -53,7 +51,7 @@ fn a_lease_is_worked_through_and_stop_is_answered() {
         .said
         .iter()
         .rev()
-        .take_while(|said| said.report == farewell)
+        .take_while(|said| said.message == farewell)
         .collect();
     assert_eq!(last.len(), 3, "FAREWELL is said three times");
     assert_eq!(last[0].seq, 3);
@@ -120,7 +118,7 @@ fn an_idle_core_asks_again() {
             match hellos {
                 1..=7 | 9 => (),
                 8 => world.lease(9, 0, 1),
-                _ => world.post(Order::Stop),
+                _ => world.post(Command::Stop),
             }
         }
     });
@@ -143,7 +141,7 @@ fn a_duplicate_lease_is_worked_through_once() {
                 1 => (0..3).for_each(|_| world.lease(1, 4, 2)),
                 2 => world.lease(1, 4, 2),
                 3 => world.lease(2, 4, 1), // the same unit under a new number: a lost packet's second try
-                _ => world.post(Order::Stop),
+                _ => world.post(Command::Stop),
             }
         }
     });
@@ -158,19 +156,12 @@ fn four_leases_are_held_and_a_fifth_is_rejected() {
         if said.is_hello() {
             match std::mem::replace(&mut first, false) {
                 true => (0..5).for_each(|n| world.lease(n, u32::from(n), 1)),
-                false => world.post(Order::Stop),
+                false => world.post(Command::Stop),
             }
         }
     });
     assert_eq!(world.units(), [0, 1, 2, 3]);
     assert_eq!(outcome.unwrap().rejected, 1);
-    let free: Vec<_> = world
-        .said
-        .iter()
-        .filter_map(|said| said.pixels())
-        .map(|pixels| pixels.free_leases)
-        .collect();
-    assert_eq!(free, [1, 2, 3, 4]);
 }
 
 /// STOP is looked for between units: a core does not work off its leases first.
@@ -181,7 +172,7 @@ fn stop_cuts_a_lease_short() {
             world.lease(1, 0, 20);
         }
         if said.pixels().is_some_and(|pixels| pixels.unit == 2) {
-            world.post(Order::Stop);
+            world.post(Command::Stop);
         }
     });
     assert_eq!(world.units(), [0, 1, 2]);
@@ -190,7 +181,7 @@ fn stop_cuts_a_lease_short() {
 
 #[test]
 fn what_is_not_for_this_core_now_is_rejected_and_counted() {
-    let lease = |first, count| Order::Lease {
+    let lease = |first, count| Command::Lease {
         number: 8,
         first,
         count,
@@ -199,7 +190,7 @@ fn what_is_not_for_this_core_now_is_rejected_and_counted() {
     let too_long = [valid.as_slice(), &[0; MAX_PAYLOAD]].concat();
     let foreign = [
         packet(1, SESSION ^ 1, lease(0, 1)), // an earlier run's
-        packet(1, SESSION ^ 1, Order::Stop),
+        packet(1, SESSION ^ 1, Command::Stop),
         packet(2, SESSION, lease(0, 1)),  // the neighbour's
         packet(1, SESSION, lease(24, 1)), // past the last unit
         packet(1, SESSION, lease(23, 2)), // over the end
@@ -214,7 +205,7 @@ fn what_is_not_for_this_core_now_is_rejected_and_counted() {
         if said.is_hello() {
             match std::mem::replace(&mut first, false) {
                 true => world.inbox.extend(foreign.clone()),
-                false => world.post(Order::Stop),
+                false => world.post(Command::Stop),
             }
         }
     });
@@ -260,7 +251,7 @@ fn a_flood_does_not_starve_the_work() {
         world.inbox.extend(std::iter::repeat_n(vec![0; 40], 50));
         if world.units().len() == 3 {
             world.inbox.clear();
-            world.post(Order::Stop);
+            world.post(Command::Stop);
         }
     });
     assert_eq!(world.units(), [0, 1, 2]);

@@ -4,7 +4,7 @@ use node::{Clock, Fault, Network, SendError, StackUse};
 use tracer::profile::Precise;
 use tracer::scene::All;
 use wire::boot::{PixelOrder, Termination};
-use wire::{Boot, FromCore, LastWords, Name, Report};
+use wire::{Boot, FaultInfo, FromCore, Message, Name};
 
 /// Keeps what is sent, as long as there is room for it.
 #[derive(Default)]
@@ -90,7 +90,10 @@ fn last_words_name_the_core() {
         core: 20,
         seq: 0,
         session: 77,
-        report: Report::Fault(LastWords { address, words }),
+        message: Message::Fault(FaultInfo {
+            address,
+            reason: words,
+        }),
     };
     assert_eq!(FromCore::decode(&mailbox.sent[0]), Ok(expected));
 }

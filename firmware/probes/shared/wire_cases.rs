@@ -5,7 +5,7 @@ use core::num::NonZeroU8;
 use fixedmath::random::Lcg64;
 use wire::boot::{PixelOrder, Termination};
 use wire::{
-    Boot, Farewell, FromCore, Hello, MAX_PAYLOAD, MAX_PIXELS, Name, Order, PixelSums, Pixels, Report,
+    Boot, Command, Farewell, FromCore, Hello, MAX_PAYLOAD, MAX_PIXELS, Message, Name, PixelSums, Pixels,
     SUM_MAX, ToCore,
 };
 
@@ -28,41 +28,41 @@ pub(crate) fn transcript() -> Result<u64, &'static str> {
     let mut hash = Hash(0xcbf2_9ce4_8422_2325);
     let mut random = Lcg64::new(5);
     for _ in 0..CASES {
-        orders(&mut random, &mut hash)?;
-        reports(&mut random, &mut hash)?;
+        commands(&mut random, &mut hash)?;
+        messages(&mut random, &mut hash)?;
         boot_blocks(&mut random, &mut hash)?;
     }
     Ok(hash.0)
 }
 
-fn orders(random: &mut Lcg64, hash: &mut Hash) -> Result<(), &'static str> {
+fn commands(random: &mut Lcg64, hash: &mut Hash) -> Result<(), &'static str> {
     let mut word = || random.next_fraction();
     let first = word();
-    let lease = Order::Lease {
+    let lease = Command::Lease {
         number: word() as u16,
         first,
         count: (word() >> 8).clamp(1, u32::MAX - first),
     };
-    for order in [lease, Order::Stop] {
+    for command in [lease, Command::Stop] {
         let packet = ToCore {
             core: word() as u16,
             session: word(),
-            order,
+            command,
         };
         let mut bytes = [0; MAX_PAYLOAD];
         let len = packet.encode(&mut bytes);
         hash.feed(&bytes[..len]);
         if ToCore::decode(&bytes[..len]) != Ok(packet) {
-            return Err("an order comes back as another");
+            return Err("a command comes back as another");
         }
         if ToCore::decode(&bytes[..len - 1]).is_ok() {
-            return Err("an order cut short is taken");
+            return Err("a command cut short is taken");
         }
     }
     Ok(())
 }
 
-fn reports(random: &mut Lcg64, hash: &mut Hash) -> Result<(), &'static str> {
+fn messages(random: &mut Lcg64, hash: &mut Hash) -> Result<(), &'static str> {
     let mut word = || random.next_fraction();
     let mut sums = [[0; 3]; MAX_PIXELS];
     let pixels = 1 + word() as usize % MAX_PIXELS;
@@ -74,44 +74,40 @@ fn reports(random: &mut Lcg64, hash: &mut Hash) -> Result<(), &'static str> {
         epoch: word() as u16,
         samples: 4 + 4 * (word() % 1024) as u16,
         scene: word(),
-        free_leases: word() as u8,
-        rejected: word() as u16,
         ticks: word(),
         rays: word(),
         sums: PixelSums::new(&sums[..pixels]).map_err(|error| error.as_str())?,
     };
     let hello = Hello {
         version: wire::VERSION,
-        free_leases: word() as u8,
         scene: word(),
         board: Name::new("some board"),
         profile: Name::new("precise"),
     };
     let farewell = Farewell {
-        units: word(),
         rejected: word(),
         stack_used: word(),
         stack_size: word(),
     };
-    for report in [
-        Report::Hello(hello),
-        Report::Pixels(pixels),
-        Report::Farewell(farewell),
+    for message in [
+        Message::Hello(hello),
+        Message::Pixels(pixels),
+        Message::Farewell(farewell),
     ] {
         let packet = FromCore {
             core: word() as u16,
             seq: word() as u16,
             session: word(),
-            report,
+            message,
         };
         let mut bytes = [0; MAX_PAYLOAD];
         let len = packet.encode(&mut bytes);
         hash.feed(&bytes[..len]);
         if FromCore::decode(&bytes[..len]) != Ok(packet) {
-            return Err("a report comes back as another");
+            return Err("a message comes back as another");
         }
         if FromCore::decode(&bytes[..len - 1]).is_ok() {
-            return Err("a report cut short is taken");
+            return Err("a message cut short is taken");
         }
     }
     Ok(())

@@ -35,7 +35,7 @@
 
 use core::num::NonZeroU8;
 
-use crate::layout::layout;
+use crate::layout::{Layout, layout};
 use crate::{DecodeError, MAX_PIXELS, MAX_SAMPLES, Name, VERSION, crc32};
 
 layout! {
@@ -70,7 +70,7 @@ layout! {
 const MAGIC: [u8; 4] = *b"PTBB";
 
 /// Bytes before the camera.
-pub const HEADER_LEN: usize = Header::LEN;
+pub const HEADER_LEN: usize = Header::END;
 
 /// Bytes that the header's checksum covers: all before it.
 const CHECKED: usize = HEADER_LEN - size_of::<u32>();
@@ -186,7 +186,7 @@ impl<'a> Boot<'a> {
         }
         let block = out.get_mut(..len).ok_or(TooLong)?;
         let (front, scene) = block.split_at_mut(scene_at);
-        let (header, camera) = front.split_first_chunk_mut().ok_or(TooLong)?;
+        let (header, camera) = front.split_first_chunk_mut::<HEADER_LEN>().ok_or(TooLong)?;
         self.header(0).write(header);
         let checksum = crc32(&header[..CHECKED]);
         self.header(checksum).write(header);
@@ -228,8 +228,7 @@ impl<'a> Boot<'a> {
 
     /// Reads a block from the start of `memory`. Total: see the crate's contract of decoding.
     pub fn decode(memory: &'a [u8]) -> Result<Self, DecodeError> {
-        let (header, rest) = memory.split_first_chunk().ok_or(DecodeError::Truncated)?;
-        let fields = Header::read(header);
+        let (fields, rest) = Header::split(memory)?;
         if fields.magic != MAGIC {
             return Err(DecodeError::Magic);
         }
@@ -239,7 +238,7 @@ impl<'a> Boot<'a> {
         if usize::from(fields.header_length) != HEADER_LEN {
             return Err(DecodeError::Range);
         }
-        if crc32(&header[..CHECKED]) != fields.checksum {
+        if crc32(&memory[..CHECKED]) != fields.checksum {
             return Err(DecodeError::Checksum);
         }
         let camera_len = usize::from(fields.camera_length);

@@ -3,43 +3,100 @@
 //! The sequence number means one thing in all of them: PIXELS packets this core had sent before this packet, modulo 2^16. The
 //! host sees a gap in it as lost packets, and FAREWELL shows even the loss of the last one.
 //!
-//! HELLO (0x0101): I have nothing to do. Argument 2: the version of the wire. Argument 3: free places in the lease queue.
+//! # HELLO (0x0101)
 //!
-//! | data offset | bytes | field                          |
-//! | ----------- | ----- | ------------------------------ |
-//! | 0           | 4     | scene id                       |
-//! | 4           | 12    | board name, ASCII, zero-padded |
-//! | 16          | 12    | profile name, likewise         |
+//! I have nothing to do.
 //!
-//! PIXELS (0x0102): a unit is done. Argument 2: its id. Argument 3: camera epoch in the lower, samples per pixel in the upper 16 bits.
+//! | offset | bytes | field                              |
+//! | ------ | ----- | ---------------------------------- |
+//! | 18     | 4     | version: of the wire               |
+//! | 22     | 4     | scene: its id                      |
+//! | 26     | 12    | board: its name, see [`Name`]      |
+//! | 38     | 12    | profile: its name, likewise        |
 //!
-//! | data offset | bytes  | field                                                      |
-//! | ----------- | ------ | ---------------------------------------------------------- |
-//! | 0           | 4      | scene id                                                   |
-//! | 4           | 1      | pixels, 1 to 16                                            |
-//! | 5           | 1      | free places in the lease queue                             |
-//! | 6           | 2      | packets rejected so far, modulo 2^16                       |
-//! | 8           | 4      | 24 MHz ticks spent rendering the unit, and on nothing else |
-//! | 12          | 4      | rays traced                                                |
-//! | 16          | 15 n   | sums, see [`PixelSums`]                                    |
+//! # PIXELS (0x0102)
 //!
-//! FAREWELL (0x0103): I was told to stop and halt now. Argument 2: units done. Argument 3: packets rejected.
+//! A unit is done.
 //!
-//! | data offset | bytes | field                              |
-//! | ----------- | ----- | ---------------------------------- |
-//! | 0           | 4     | the most stack ever used, in bytes |
-//! | 4           | 4     | size of the stack in bytes         |
+//! | offset | bytes  | field                                                             |
+//! | ------ | ------ | ----------------------------------------------------------------- |
+//! | 18     | 4      | unit: its id                                                      |
+//! | 22     | 2      | epoch: the camera's                                               |
+//! | 24     | 2      | samples: of each pixel                                            |
+//! | 26     | 4      | scene: its id                                                     |
+//! | 30     | 4      | ticks: of 24 MHz, spent rendering the unit, and on nothing else   |
+//! | 34     | 4      | rays: how many were traced                                        |
+//! | 38     | 15 n   | the sums of 1 to 16 pixels, see [`PixelSums`]                     |
 //!
-//! FAULT (0x0104): I fail. Argument 2: the address of the instruction that failed, zero where nobody knows it. Argument 3: 1 where
-//! that address is known, else 0. Data: last words, UTF-8, at most 256 bytes.
+//! # FAREWELL (0x0103)
+//!
+//! I was told to stop and halt now.
+//!
+//! | offset | bytes | field                                          |
+//! | ------ | ----- | ---------------------------------------------- |
+//! | 18     | 4     | rejected: packets that were not for this core  |
+//! | 22     | 4     | stack used: the most there ever was, in bytes  |
+//! | 26     | 4     | stack size: in bytes                           |
+//!
+//! # FAULT (0x0104)
+//!
+//! I fail.
+//!
+//! | offset | bytes | field                                                                      |
+//! | ------ | ----- | -------------------------------------------------------------------------- |
+//! | 18     | 4     | address: of the instruction that failed, zero where nobody knows it        |
+//! | 22     | 4     | address known: 1 where it is, else 0                                       |
+//! | 26     | 0-256 | why, UTF-8                                                                 |
 
-use crate::bytes::Reader;
-use crate::{DecodeError, Frame, MAX_DATA, MAX_PAYLOAD, MAX_SAMPLES, Name, PixelSums};
+use crate::frame::Frame;
+use crate::layout::{Layout, layout};
+use crate::{DecodeError, MAX_PAYLOAD, MAX_SAMPLES, Name, PixelSums};
 
 const HELLO: u16 = 0x0101;
 const PIXELS: u16 = 0x0102;
 const FAREWELL: u16 = 0x0103;
 const FAULT: u16 = 0x0104;
+
+layout! {
+    struct HelloBody[18..50] {
+        18 => version: u32,
+        22 => scene: u32,
+        26 => board: [u8; Name::LEN],
+        38 => profile: [u8; Name::LEN],
+    }
+}
+
+layout! {
+    struct PixelsBody[18..38] {
+        18 => unit: u32,
+        22 => epoch: u16,
+        24 => samples: u16,
+        26 => scene: u32,
+        30 => ticks: u32,
+        34 => rays: u32,
+    }
+}
+
+layout! {
+    struct FarewellBody[18..30] {
+        18 => rejected: u32,
+        22 => stack_used: u32,
+        26 => stack_size: u32,
+    }
+}
+
+layout! {
+    struct FaultBody[18..26] {
+        18 => address: u32,
+        22 => address_known: u32,
+    }
+}
+
+/// The most bytes of a fault's reason.
+pub const MAX_REASON: usize = MAX_PAYLOAD - FaultBody::END;
+
+// The largest unit fills no more than a packet.
+const _: () = assert!(PixelsBody::END + PixelSums::MAX_LEN <= MAX_PAYLOAD);
 
 /// A packet from a core.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,7 +108,7 @@ pub struct FromCore<'a> {
     /// The run this packet belongs to.
     pub session: u32,
     /// What it says.
-    pub report: Report<'a>,
+    pub message: Message<'a>,
 }
 
 /// What a packet from a core says.
@@ -60,7 +117,7 @@ pub struct FromCore<'a> {
     reason = "no_std without an allocator, and PIXELS is what nearly every packet is"
 )]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Report<'a> {
+pub enum Message<'a> {
     /// "I have nothing to do."
     Hello(Hello),
     /// "This unit is done."
@@ -68,7 +125,7 @@ pub enum Report<'a> {
     /// "I was told to stop, and halt now."
     Farewell(Farewell),
     /// "I fail."
-    Fault(LastWords<'a>),
+    Fault(FaultInfo<'a>),
 }
 
 /// A core without work.
@@ -76,8 +133,6 @@ pub enum Report<'a> {
 pub struct Hello {
     /// Version of the wire the core speaks.
     pub version: u16,
-    /// Leases it has room for.
-    pub free_leases: u8,
     /// The scene it was booted with.
     pub scene: u32,
     /// Its board.
@@ -97,10 +152,6 @@ pub struct Pixels {
     pub samples: u16,
     /// The scene it was rendered from.
     pub scene: u32,
-    /// Leases the core has room for.
-    pub free_leases: u8,
-    /// Packets the core has rejected so far, modulo 2^16.
-    pub rejected: u16,
     /// 24 MHz ticks spent rendering this unit, and on nothing else.
     pub ticks: u32,
     /// Rays traced.
@@ -112,8 +163,6 @@ pub struct Pixels {
 /// A core that halts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Farewell {
-    /// Units it has rendered.
-    pub units: u32,
     /// Packets it has rejected: malformed, of another session, or for another core.
     pub rejected: u32,
     /// The most stack it ever used, in bytes. Zero where nobody measured.
@@ -124,149 +173,182 @@ pub struct Farewell {
 
 /// Why a core fails, and where.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct LastWords<'a> {
+pub struct FaultInfo<'a> {
     /// The instruction that failed, where the core knows it.
     pub address: Option<u32>,
-    /// The cause in words. Encoding cuts them to the 256 bytes there is room for.
-    pub words: &'a str,
+    /// The cause in words. Encoding cuts them to [`MAX_REASON`] bytes.
+    pub reason: &'a str,
 }
 
 impl<'a> FromCore<'a> {
     /// Writes the packet and returns its length. The rest of `out` stays as it is.
     pub fn encode(&self, out: &mut [u8; MAX_PAYLOAD]) -> usize {
-        let (command, arg2, arg3) = match &self.report {
-            Report::Hello(hello) => (HELLO, u32::from(hello.version), u32::from(hello.free_leases)),
-            Report::Pixels(pixels) => (
-                PIXELS,
-                pixels.unit,
-                u32::from(pixels.samples) << 16 | u32::from(pixels.epoch),
-            ),
-            Report::Farewell(farewell) => (FAREWELL, farewell.units, farewell.rejected),
-            Report::Fault(fault) => (
-                FAULT,
-                fault.address.unwrap_or(0),
-                u32::from(fault.address.is_some()),
-            ),
+        let (command, len) = match &self.message {
+            Message::Hello(hello) => (HELLO, hello.encode(out)),
+            Message::Pixels(pixels) => (PIXELS, pixels.encode(out)),
+            Message::Farewell(farewell) => (FAREWELL, farewell.encode(out)),
+            Message::Fault(fault) => (FAULT, fault.encode(out)),
         };
         let (core, seq, session) = (self.core, self.seq, self.session);
-        let mut writer = Frame {
+        Frame {
             core,
             command,
             seq,
             session,
-            arg2,
-            arg3,
-            data: &[],
         }
-        .start_to_host(out);
-        match &self.report {
-            Report::Hello(hello) => {
-                writer.u32(hello.scene);
-                writer.bytes(&hello.board.to_bytes());
-                writer.bytes(&hello.profile.to_bytes());
-            }
-            Report::Pixels(pixels) => {
-                writer.u32(pixels.scene);
-                writer.u8(pixels.sums.pixels());
-                writer.u8(pixels.free_leases);
-                writer.u16(pixels.rejected);
-                writer.u32(pixels.ticks);
-                writer.u32(pixels.rays);
-                writer.bytes(pixels.sums.bytes());
-            }
-            Report::Farewell(farewell) => {
-                writer.u32(farewell.stack_used);
-                writer.u32(farewell.stack_size);
-            }
-            Report::Fault(fault) => writer.bytes(cut(fault.words).as_bytes()),
-        }
-        writer.len()
+        .write_to_host(out);
+        len
     }
 
     /// Reads a packet. Total: see the crate's contract of decoding.
     pub fn decode(payload: &'a [u8]) -> Result<Self, DecodeError> {
-        let frame = Frame::from_core(payload)?;
-        let report = match frame.command {
-            HELLO => Report::Hello(Hello::decode(&frame)?),
-            PIXELS => Report::Pixels(Pixels::decode(&frame)?),
-            FAREWELL => Report::Farewell(Farewell::decode(&frame)?),
-            FAULT => Report::Fault(LastWords::decode(&frame)?),
+        let Frame {
+            core,
+            command,
+            seq,
+            session,
+        } = Frame::from_core(payload)?;
+        let message = match command {
+            HELLO => Message::Hello(Hello::decode(payload)?),
+            PIXELS => Message::Pixels(Pixels::decode(payload)?),
+            FAREWELL => Message::Farewell(Farewell::decode(payload)?),
+            FAULT => Message::Fault(FaultInfo::decode(payload)?),
             other => return Err(DecodeError::Command(other)),
         };
         Ok(Self {
-            core: frame.core,
-            seq: frame.seq,
-            session: frame.session,
-            report,
+            core,
+            seq,
+            session,
+            message,
         })
     }
 }
 
 impl Hello {
-    fn decode(frame: &Frame<'_>) -> Result<Self, DecodeError> {
-        let mut reader = Reader::new(frame.data);
-        let hello = Self {
-            version: u16::try_from(frame.arg2).map_err(|_| DecodeError::Range)?,
-            free_leases: u8::try_from(frame.arg3).map_err(|_| DecodeError::Range)?,
-            scene: reader.u32()?,
-            board: Name::from_bytes(reader.array()?)?,
-            profile: Name::from_bytes(reader.array()?)?,
-        };
-        reader.end()?;
-        Ok(hello)
+    fn encode(&self, out: &mut [u8; MAX_PAYLOAD]) -> usize {
+        HelloBody {
+            version: self.version.into(),
+            scene: self.scene,
+            board: self.board.to_bytes(),
+            profile: self.profile.to_bytes(),
+        }
+        .write(out);
+        HelloBody::END
+    }
+
+    fn decode(payload: &[u8]) -> Result<Self, DecodeError> {
+        let body = HelloBody::whole(payload)?;
+        Ok(Self {
+            version: u16::try_from(body.version).map_err(|_| DecodeError::Range)?,
+            scene: body.scene,
+            board: Name::from_bytes(body.board)?,
+            profile: Name::from_bytes(body.profile)?,
+        })
     }
 }
 
 impl Pixels {
-    fn decode(frame: &Frame<'_>) -> Result<Self, DecodeError> {
-        let samples = (frame.arg3 >> 16) as u16;
-        if samples == 0 || !samples.is_multiple_of(4) || samples > MAX_SAMPLES {
+    fn encode(&self, out: &mut [u8; MAX_PAYLOAD]) -> usize {
+        PixelsBody {
+            unit: self.unit,
+            epoch: self.epoch,
+            samples: self.samples,
+            scene: self.scene,
+            ticks: self.ticks,
+            rays: self.rays,
+        }
+        .write(out);
+        append(out, PixelsBody::END, self.sums.bytes())
+    }
+
+    fn decode(payload: &[u8]) -> Result<Self, DecodeError> {
+        let (body, sums) = PixelsBody::split(payload)?;
+        if body.samples == 0 || !body.samples.is_multiple_of(4) || body.samples > MAX_SAMPLES {
             return Err(DecodeError::Range);
         }
-        let mut reader = Reader::new(frame.data);
-        let scene = reader.u32()?;
-        let count = reader.u8()?;
         Ok(Self {
-            unit: frame.arg2,
-            epoch: frame.arg3 as u16,
-            samples,
-            scene,
-            free_leases: reader.u8()?,
-            rejected: reader.u16()?,
-            ticks: reader.u32()?,
-            rays: reader.u32()?,
-            sums: PixelSums::from_bytes(reader.rest(), count)?,
+            unit: body.unit,
+            epoch: body.epoch,
+            samples: body.samples,
+            scene: body.scene,
+            ticks: body.ticks,
+            rays: body.rays,
+            sums: PixelSums::from_bytes(sums)?,
         })
     }
 }
 
 impl Farewell {
-    fn decode(frame: &Frame<'_>) -> Result<Self, DecodeError> {
-        let mut reader = Reader::new(frame.data);
-        let farewell = Self {
-            units: frame.arg2,
-            rejected: frame.arg3,
-            stack_used: reader.u32()?,
-            stack_size: reader.u32()?,
-        };
-        reader.end()?;
-        Ok(farewell)
+    fn encode(&self, out: &mut [u8; MAX_PAYLOAD]) -> usize {
+        FarewellBody {
+            rejected: self.rejected,
+            stack_used: self.stack_used,
+            stack_size: self.stack_size,
+        }
+        .write(out);
+        FarewellBody::END
+    }
+
+    fn decode(payload: &[u8]) -> Result<Self, DecodeError> {
+        let body = FarewellBody::whole(payload)?;
+        Ok(Self {
+            rejected: body.rejected,
+            stack_used: body.stack_used,
+            stack_size: body.stack_size,
+        })
     }
 }
 
-impl<'a> LastWords<'a> {
-    fn decode(frame: &Frame<'a>) -> Result<Self, DecodeError> {
-        let address = match (frame.arg2, frame.arg3) {
+impl<'a> FaultInfo<'a> {
+    fn encode(&self, out: &mut [u8; MAX_PAYLOAD]) -> usize {
+        FaultBody {
+            address: self.address.unwrap_or(0),
+            address_known: self.address.is_some().into(),
+        }
+        .write(out);
+        // As many whole characters as there is room for.
+        let end = self.reason.floor_char_boundary(MAX_REASON);
+        append(out, FaultBody::END, &self.reason.as_bytes()[..end])
+    }
+
+    fn decode(payload: &'a [u8]) -> Result<Self, DecodeError> {
+        let (body, reason) = FaultBody::split(payload)?;
+        let address = match (body.address, body.address_known) {
             (0, 0) => None,
             (address, 1) => Some(address),
             _ => return Err(DecodeError::Range),
         };
-        let words = core::str::from_utf8(frame.data).map_err(|_| DecodeError::Text)?;
-        Ok(Self { address, words })
+        let reason = core::str::from_utf8(reason).map_err(|_| DecodeError::Text)?;
+        Ok(Self { address, reason })
     }
 }
 
-/// As many whole characters as a packet has room for.
-fn cut(words: &str) -> &str {
-    words.get(..words.floor_char_boundary(MAX_DATA)).unwrap_or(words)
+/// Puts the last part of a message, for which there is room, at `at`, and says where it ends.
+fn append(out: &mut [u8; MAX_PAYLOAD], at: usize, part: &[u8]) -> usize {
+    let end = at + part.len();
+    out[at..end].copy_from_slice(part);
+    end
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::layout::Place;
+    use crate::layout::tests::{assert_dissected, assert_documented};
+
+    #[test]
+    fn the_messages_are_as_documented_and_as_wireshark_shows_them() {
+        let pixel = PixelSums::MAX_LEN / crate::MAX_PIXELS;
+        let messages: [(_, _, &[Place], _); 4] = [
+            ("HELLO", HELLO, HelloBody::FIELDS, HelloBody::END),
+            ("PIXELS", PIXELS, PixelsBody::FIELDS, PixelsBody::END + pixel),
+            ("FAREWELL", FAREWELL, FarewellBody::FIELDS, FarewellBody::END),
+            ("FAULT", FAULT, FaultBody::FIELDS, FaultBody::END),
+        ];
+        for (name, command, fields, least) in messages {
+            let heading = std::format!("# {name} ({command:#06x})");
+            assert_documented(include_str!("from_core.rs"), &heading, fields);
+            assert_dissected(name, command, fields, least);
+        }
+    }
 }

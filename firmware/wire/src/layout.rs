@@ -1,6 +1,8 @@
 //! Where fields lie. A message states each offset once, in a [`layout!`]; what reads it, what writes it and what tests its
 //! documentation take it from there.
 
+use crate::DecodeError;
+
 /// What a field holds: a little-endian number, or bytes as they are.
 pub(crate) trait Field: Sized {
     /// Bytes it takes.
@@ -50,6 +52,38 @@ impl<const N: usize> Field for [u8; N] {
 /// A field's name, offset and length.
 pub(crate) type Place = (&'static str, usize, usize);
 
+/// The fields of a message that have fixed places, as [`layout!`] declares them.
+pub(crate) trait Layout: Sized {
+    /// Where they are.
+    const FIELDS: &'static [Place];
+    /// Where the last one ends.
+    const END: usize;
+
+    /// Takes them out of a message, of which there must be [`END`](Layout::END) bytes.
+    fn read(message: &[u8]) -> Self;
+
+    /// Puts them into a message that has room for them.
+    fn write(self, message: &mut [u8]);
+
+    /// The fields of a message, and what follows them.
+    #[inline(always)] // a constant length needs no code to see that no field is out of bounds
+    fn split(message: &[u8]) -> Result<(Self, &[u8]), DecodeError> {
+        let (fields, rest) = message
+            .split_at_checked(Self::END)
+            .ok_or(DecodeError::Truncated)?;
+        Ok((Self::read(fields), rest))
+    }
+
+    /// The fields of a message that ends with them.
+    #[inline(always)]
+    fn whole(message: &[u8]) -> Result<Self, DecodeError> {
+        match Self::split(message)? {
+            (fields, []) => Ok(fields),
+            _ => Err(DecodeError::TooLong),
+        }
+    }
+}
+
 /// Whether fields fill the bytes from `start` to `end`, one right after the other.
 pub(crate) const fn is_contiguous(fields: &[Place], start: usize, end: usize) -> bool {
     let (mut next, mut index) = (start, 0);
@@ -63,9 +97,8 @@ pub(crate) const fn is_contiguous(fields: &[Place], start: usize, end: usize) ->
     next == end
 }
 
-/// Declares the fields of bytes `start..end` of a message, by offset, name and type, as a struct of the values in them. Its
-/// `read` and `write` work on an array of just these bytes, so that no field can be out of bounds, and a core needs no code to
-/// see that. Fields that overlap or leave a gap do not compile.
+/// Declares the fields of bytes `start..end` of a message, by offset, name and type, as a struct of the values in them. Fields
+/// that overlap or leave a gap do not compile.
 macro_rules! layout {
     (
         $(#[$attribute:meta])*
@@ -73,27 +106,31 @@ macro_rules! layout {
     ) => {
         $(#[$attribute])*
         #[derive(Clone, Copy)]
-        pub(crate) struct $name {
-            $(pub(crate) $field: $kind,)+
+        struct $name {
+            $($field: $kind,)+
         }
 
-        impl $name {
-            pub(crate) const LEN: usize = $end - $start;
-            pub(crate) const FIELDS: &[$crate::layout::Place] =
+        impl $crate::layout::Layout for $name {
+            const FIELDS: &'static [$crate::layout::Place] =
                 &[$((stringify!($field), $at, <$kind as $crate::layout::Field>::LEN),)+];
+            const END: usize = $end;
 
             #[inline(always)]
-            pub(crate) fn read(bytes: &[u8; Self::LEN]) -> Self {
-                Self { $($field: $crate::layout::Field::read(bytes, $at - $start),)+ }
+            fn read(message: &[u8]) -> Self {
+                Self { $($field: $crate::layout::Field::read(message, $at),)+ }
             }
 
             #[inline(always)]
-            pub(crate) fn write(self, bytes: &mut [u8; Self::LEN]) {
-                $($crate::layout::Field::write(self.$field, bytes, $at - $start);)+
+            fn write(self, message: &mut [u8]) {
+                $($crate::layout::Field::write(self.$field, message, $at);)+
             }
         }
 
-        const _: () = assert!($crate::layout::is_contiguous($name::FIELDS, $start, $end));
+        const _: () = assert!($crate::layout::is_contiguous(
+            <$name as $crate::layout::Layout>::FIELDS,
+            $start,
+            $end,
+        ));
     };
 }
 
@@ -101,8 +138,6 @@ pub(crate) use layout;
 
 #[cfg(test)]
 pub(crate) mod tests {
-    extern crate std;
-
     use std::borrow::ToOwned;
     use std::string::String;
     use std::vec::Vec;
@@ -126,10 +161,14 @@ pub(crate) mod tests {
             word: 0x0807_0605,
             half: 0x0A09,
         };
-        let mut bytes = [0; Sample::LEN];
+        let mut bytes = [0; 15];
         sample.write(&mut bytes);
-        assert_eq!(bytes, [1, 2, 3, 4, 5, 6, 7, 8, 9, 10]);
-        assert_eq!(Sample::read(&bytes).word, sample.word);
+        assert_eq!(bytes, [0, 0, 0, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 0]);
+        let (read, rest) = Sample::split(&bytes).expect("it is long enough");
+        assert_eq!((read.word, rest), (sample.word, &[0][..]));
+        assert!(Sample::whole(&bytes[..14]).is_ok());
+        assert_eq!(Sample::whole(&bytes).err(), Some(DecodeError::TooLong));
+        assert_eq!(Sample::split(&bytes[..13]).err(), Some(DecodeError::Truncated));
     }
 
     #[test]
@@ -167,5 +206,45 @@ pub(crate) mod tests {
             .map(|&(name, at, len)| (name.to_owned(), at, len))
             .collect();
         assert_eq!(documented, stated, "after {heading:?}");
+    }
+
+    const DISSECTOR: &str = include_str!("../../../docs/sdp.lua");
+
+    /// What stands between two texts in the dissector that shows Wireshark our packets.
+    pub(crate) fn dissector(from: &str, to: &str) -> &'static str {
+        let (_, text) = DISSECTOR.split_once(from).expect("the dissector has it");
+        text.split_once(to).expect("and it ends").0
+    }
+
+    /// Checks a part of the dissector: what it takes from the bytes of a layout, it takes by the layout's names from the layout's
+    /// places, and it looks at all of them.
+    pub(crate) fn assert_placed(part: &str, fields: &[Place]) {
+        let end = fields.last().map_or(0, |&(_, at, len)| at + len);
+        // What the dissector works out has no place.
+        let from_bytes = |line: &&str| line.trim().starts_with("tree:add") && !line.contains("set_generated");
+        for line in part.lines().filter(from_bytes) {
+            let (_, call) = line.split_once("f.").expect("a field");
+            let (name, place) = call.split_once(", packet(").expect("its place");
+            let mut numbers = place.split([',', ')']).map_while(|word| word.trim().parse().ok());
+            if let (Some(at), Some(len)) = (numbers.next(), numbers.next())
+                && at < end
+            {
+                assert!(fields.contains(&(name, at, len)), "{line}");
+            }
+        }
+        for (name, at, len) in fields {
+            assert!(part.contains(&std::format!("packet({at}, {len})")), "{name}");
+        }
+    }
+
+    /// Checks what the dissector makes of a command that has at least so many bytes.
+    pub(crate) fn assert_dissected(name: &str, command: u16, fields: &[Place], least: usize) {
+        let code = std::format!("[{command:#06x}] = \"{name}\"");
+        assert!(dissector("local COMMANDS = {", "}").contains(&code), "{code}");
+        let shortest = std::format!(" {name} = {least} ");
+        let list = dissector("local LEAST = {", "}").replace(',', " ");
+        assert!(list.contains(&shortest), "{shortest} in {list}");
+        let body = dissector(&std::format!("    {name} = function"), "\n    end");
+        assert_placed(body, fields);
     }
 }

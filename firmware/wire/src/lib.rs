@@ -6,16 +6,23 @@
 //!
 //! A UDP payload is a SpiNNaker datagram as a real board's Ethernet core would send it:
 //!
-//! | offset | bytes | what                                                             | module      |
-//! | ------ | ----- | ---------------------------------------------------------------- | ----------- |
-//! | 0      | 2     | padding, zero                                                    | [`frame`]   |
-//! | 2      | 8     | SDP header: flags, tag, ports, chips                             | [`frame`]   |
-//! | 10     | 4     | SCP command and sequence number                                  | [`frame`]   |
-//! | 14     | 12    | SCP arguments 1 to 3; argument 1 is always the session           | [`frame`]   |
-//! | 26     | 0-256 | data, laid out by the command                                    | [`from_core`], [`to_core`] |
+//! | offset | bytes | field                                                                         |
+//! | ------ | ----- | ----------------------------------------------------------------------------- |
+//! | 0      | 2     | padding: zero                                                                 |
+//! | 2      | 1     | flags: of SDP, 0x07, no reply wanted (ignored on receipt)                     |
+//! | 3      | 1     | tag: of SDP, 1 towards the host, 0xFF towards a core (ignored on receipt)     |
+//! | 4      | 1     | dest port cpu: destination port << 5 or processor                             |
+//! | 5      | 1     | srce port cpu: source port << 5 or processor                                  |
+//! | 6      | 1     | dest y: destination chip                                                      |
+//! | 7      | 1     | dest x                                                                        |
+//! | 8      | 1     | srce y: source chip                                                           |
+//! | 9      | 1     | srce x                                                                        |
+//! | 10     | 2     | cmd rc: the SCP command                                                       |
+//! | 12     | 2     | seq: the SCP sequence number                                                  |
+//! | 14     | 4     | arg1: the first argument of SCP, the session                                  |
+//! | 18     | 8-264 | arguments 2 and 3 and data, laid out by the command: [`from_core`], [`to_core`] |
 //!
-//! All numbers are little-endian. [`Frame`] is the *view*: it checks that the headers are there and gives their fields raw.
-//! [`FromCore`] and [`ToCore`] are the *parsed forms*: a value of theirs has passed every check that needs no context.
+//! All numbers are little-endian. A value of [`FromCore`] or [`ToCore`] has passed every check that needs no context.
 //!
 //! # The contract of decoding
 //!
@@ -28,11 +35,14 @@
 #![no_std]
 #![forbid(unsafe_code)]
 
+#[cfg(test)]
+extern crate std;
+
 mod address;
 pub mod boot;
-mod bytes;
+mod crc;
 mod error;
-pub mod frame;
+mod frame;
 pub mod from_core;
 mod layout;
 mod name;
@@ -41,13 +51,12 @@ pub mod to_core;
 
 pub use address::CORES_PER_CHIP;
 pub use boot::Boot;
-pub use bytes::crc32;
+pub use crc::crc32;
 pub use error::DecodeError;
-pub use frame::Frame;
-pub use from_core::{Farewell, FromCore, Hello, LastWords, Pixels, Report};
+pub use from_core::{Farewell, FaultInfo, FromCore, Hello, MAX_REASON, Message, Pixels};
 pub use name::Name;
 pub use sums::{PixelSums, SUM_MAX, SumsError};
-pub use to_core::{Order, ToCore};
+pub use to_core::{Command, ToCore};
 
 /// Version of everything in this crate; a core says it in HELLO, and the boot block carries it.
 pub const VERSION: u16 = 3;
@@ -55,14 +64,8 @@ pub const VERSION: u16 = 3;
 /// The collector's UDP port unless a job says otherwise.
 pub const DEFAULT_PORT: u16 = 17893;
 
-/// Bytes before the data: padding, SDP header, SCP header.
-pub const HEADER_LEN: usize = 26;
-
-/// The most data bytes a packet carries.
-pub const MAX_DATA: usize = 256;
-
-/// The longest UDP payload.
-pub const MAX_PAYLOAD: usize = HEADER_LEN + MAX_DATA;
+/// The longest UDP payload: SCP's headers and 256 bytes of data, as much as SDP allows.
+pub const MAX_PAYLOAD: usize = 26 + 256;
 
 /// The most pixels in one PIXELS packet.
 pub const MAX_PIXELS: usize = 16;

@@ -48,14 +48,17 @@ impl core::error::Error for SumsError {}
 /// The sums of 1 to [`MAX_PIXELS`] pixels as they travel.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub struct PixelSums {
-    packed: [u8; MAX_PIXELS * PIXEL_LEN],
+    packed: [u8; PixelSums::MAX_LEN],
     pixels: u8,
 }
 
 impl PixelSums {
+    /// Bytes that the most pixels take.
+    pub(crate) const MAX_LEN: usize = MAX_PIXELS * PIXEL_LEN;
+
     /// Packs the sums of `pixels`.
     pub fn new(pixels: &[[u64; 3]]) -> Result<Self, SumsError> {
-        let mut packed = [0; MAX_PIXELS * PIXEL_LEN];
+        let mut packed = [0; Self::MAX_LEN];
         if pixels.is_empty() || pixels.len() > MAX_PIXELS {
             return Err(SumsError::Pixels);
         }
@@ -94,20 +97,14 @@ impl PixelSums {
         &self.packed[..usize::from(self.pixels) * PIXEL_LEN]
     }
 
-    pub(crate) fn from_bytes(bytes: &[u8], pixels: u8) -> Result<Self, DecodeError> {
-        if pixels == 0 || usize::from(pixels) > MAX_PIXELS {
-            return Err(DecodeError::Range);
+    pub(crate) fn from_bytes(bytes: &[u8]) -> Result<Self, DecodeError> {
+        if bytes.is_empty() || !bytes.len().is_multiple_of(PIXEL_LEN) {
+            return Err(DecodeError::Truncated);
         }
-        let mut packed = [0; MAX_PIXELS * PIXEL_LEN];
-        let wanted = usize::from(pixels) * PIXEL_LEN;
-        if bytes.len() != wanted {
-            return Err(if bytes.len() < wanted {
-                DecodeError::Truncated
-            } else {
-                DecodeError::TooLong
-            });
-        }
-        packed[..wanted].copy_from_slice(bytes);
+        let mut packed = [0; Self::MAX_LEN];
+        let room = packed.get_mut(..bytes.len()).ok_or(DecodeError::TooLong)?;
+        room.copy_from_slice(bytes);
+        let pixels = (bytes.len() / PIXEL_LEN) as u8;
         Ok(Self { packed, pixels })
     }
 }

@@ -1,16 +1,43 @@
 //! What the host tells a core.
 //!
-//! LEASE (0x0201): render these units. The sequence number is the lease's own: a core that sees the number of one of its last few
-//! leases again ignores it, so a host that wants a unit done *again* gives a new number. Argument 2: the first unit. Argument 3:
-//! how many. No data.
+//! # LEASE (0x0201)
 //!
-//! STOP (0x0202): answer FAREWELL and halt. The sequence number and the arguments 2 and 3 are zero. No data.
+//! Render these units. The sequence number is the lease's own: a core that sees the number of one of its last few leases again
+//! ignores it, so a host that wants a unit done *again* gives a new number.
+//!
+//! | offset | bytes | field                   |
+//! | ------ | ----- | ----------------------- |
+//! | 18     | 4     | first: the first unit   |
+//! | 22     | 4     | count: how many units   |
+//!
+//! # STOP (0x0202)
+//!
+//! Answer FAREWELL and halt. The sequence number is zero.
+//!
+//! | offset | bytes | field        |
+//! | ------ | ----- | ------------ |
+//! | 18     | 8     | unused: zero |
 
-use crate::bytes::Reader;
-use crate::{DecodeError, Frame, MAX_PAYLOAD};
+use crate::frame::Frame;
+use crate::layout::{Layout, layout};
+use crate::{DecodeError, MAX_PAYLOAD};
 
 const LEASE: u16 = 0x0201;
 const STOP: u16 = 0x0202;
+
+layout! {
+    struct LeaseBody[18..26] {
+        18 => first: u32,
+        22 => count: u32,
+    }
+}
+
+layout! {
+    struct StopBody[18..26] {
+        // Arguments 2 and 3 of SCP, which are always there.
+        18 => unused: u64,
+    }
+}
 
 /// A packet to a core.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,13 +46,13 @@ pub struct ToCore {
     pub core: u16,
     /// The run it belongs to.
     pub session: u32,
-    /// What it says.
-    pub order: Order,
+    /// What the core is to do.
+    pub command: Command,
 }
 
-/// What a packet to a core says.
+/// What a core is to do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Order {
+pub enum Command {
     /// Render units `first` to `first + count - 1`.
     Lease {
         /// The lease's own number.
@@ -42,9 +69,15 @@ pub enum Order {
 impl ToCore {
     /// Writes the packet and returns its length. The rest of `out` stays as it is.
     pub fn encode(&self, out: &mut [u8; MAX_PAYLOAD]) -> usize {
-        let (command, seq, arg2, arg3) = match self.order {
-            Order::Lease { number, first, count } => (LEASE, number, first, count),
-            Order::Stop => (STOP, 0, 0, 0),
+        let (command, seq, len) = match self.command {
+            Command::Lease { number, first, count } => {
+                LeaseBody { first, count }.write(out);
+                (LEASE, number, LeaseBody::END)
+            }
+            Command::Stop => {
+                StopBody { unused: 0 }.write(out);
+                (STOP, 0, StopBody::END)
+            }
         };
         let (core, session) = (self.core, self.session);
         Frame {
@@ -52,37 +85,51 @@ impl ToCore {
             command,
             seq,
             session,
-            arg2,
-            arg3,
-            data: &[],
         }
-        .start_to_core(out)
-        .len()
+        .write_to_core(out);
+        len
     }
 
     /// Reads a packet. Total: see the crate's contract of decoding.
     pub fn decode(payload: &[u8]) -> Result<Self, DecodeError> {
-        let frame = Frame::to_core(payload)?;
         let Frame {
             core,
-            session,
+            command,
             seq,
-            arg2,
-            arg3,
-            ..
-        } = frame;
-        let order = match frame.command {
-            LEASE if arg3 == 0 || arg2.checked_add(arg3 - 1).is_none() => return Err(DecodeError::Range),
-            LEASE => Order::Lease {
-                number: seq,
-                first: arg2,
-                count: arg3,
-            },
-            STOP if seq != 0 || arg2 != 0 || arg3 != 0 => return Err(DecodeError::Range),
-            STOP => Order::Stop,
+            session,
+        } = Frame::to_core(payload)?;
+        let command = match command {
+            LEASE => lease(seq, LeaseBody::whole(payload)?)?,
+            STOP if seq != 0 || StopBody::whole(payload)?.unused != 0 => return Err(DecodeError::Range),
+            STOP => Command::Stop,
             other => return Err(DecodeError::Command(other)),
         };
-        Reader::new(frame.data).end()?;
-        Ok(Self { core, session, order })
+        Ok(Self {
+            core,
+            session,
+            command,
+        })
+    }
+}
+
+fn lease(number: u16, LeaseBody { first, count }: LeaseBody) -> Result<Command, DecodeError> {
+    if count == 0 || first.checked_add(count - 1).is_none() {
+        return Err(DecodeError::Range);
+    }
+    Ok(Command::Lease { number, first, count })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::layout::tests::{assert_dissected, assert_documented};
+
+    #[test]
+    fn the_commands_are_as_documented_and_as_wireshark_shows_them() {
+        let text = include_str!("to_core.rs");
+        assert_documented(text, &std::format!("# LEASE ({LEASE:#06x})"), LeaseBody::FIELDS);
+        assert_documented(text, &std::format!("# STOP ({STOP:#06x})"), StopBody::FIELDS);
+        assert_dissected("LEASE", LEASE, LeaseBody::FIELDS, LeaseBody::END);
+        assert_dissected("STOP", STOP, &[], StopBody::END);
     }
 }

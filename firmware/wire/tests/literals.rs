@@ -4,7 +4,8 @@ use std::num::NonZeroU8;
 
 use wire::boot::{self, PixelOrder, Termination};
 use wire::{
-    Boot, Farewell, FromCore, Hello, LastWords, MAX_PAYLOAD, Name, Order, PixelSums, Pixels, Report, ToCore,
+    Boot, Command, Farewell, FaultInfo, FromCore, Hello, MAX_PAYLOAD, Message, Name, PixelSums, Pixels,
+    ToCore,
 };
 
 const SESSION: u32 = 0x5E55_1041;
@@ -28,9 +29,8 @@ fn to_core(packet: ToCore, expected: &[u8]) {
 
 #[test]
 fn hello() {
-    let report = Report::Hello(Hello {
+    let message = Message::Hello(Hello {
         version: 1,
-        free_leases: 4,
         scene: 0xDEAD_BEEF,
         board: Name::new("versatilepb"),
         profile: Name::new("precise"),
@@ -40,8 +40,7 @@ fn hello() {
         0, 0,
         0x07, 0x01, 0xFF, 0x21, 0, 0, 0, 0,
         0x01, 0x01, 0x34, 0x12,
-        0x41, 0x10, 0x55, 0x5E, 1, 0, 0, 0, 4, 0, 0, 0,
-        0xEF, 0xBE, 0xAD, 0xDE,
+        0x41, 0x10, 0x55, 0x5E, 1, 0, 0, 0, 0xEF, 0xBE, 0xAD, 0xDE,
         b'v', b'e', b'r', b's', b'a', b't', b'i', b'l', b'e', b'p', b'b', 0,
         b'p', b'r', b'e', b'c', b'i', b's', b'e', 0, 0, 0, 0, 0,
     ];
@@ -50,7 +49,7 @@ fn hello() {
             core: 0,
             seq: 0x1234,
             session: SESSION,
-            report,
+            message,
         },
         &expected,
     );
@@ -58,13 +57,11 @@ fn hello() {
 
 #[test]
 fn pixels() {
-    let report = Report::Pixels(Pixels {
+    let message = Message::Pixels(Pixels {
         unit: 0x0102_0304,
         epoch: 9,
         samples: 64,
         scene: 0xDEAD_BEEF,
-        free_leases: 3,
-        rejected: 2,
         ticks: 0x0A0B_0C0D,
         rays: 6789,
         sums: PixelSums::new(&[[0x01_0203_0405, 0, wire::SUM_MAX], [1, 2, 3]]).unwrap(),
@@ -76,7 +73,7 @@ fn pixels() {
         0x07, 0x01, 0xFF, 0x25, 0, 0, 1, 0,
         0x02, 0x01, 0xFF, 0xFF,
         0x41, 0x10, 0x55, 0x5E, 0x04, 0x03, 0x02, 0x01, 9, 0, 64, 0,
-        0xEF, 0xBE, 0xAD, 0xDE, 2, 3, 2, 0, 0x0D, 0x0C, 0x0B, 0x0A, 0x85, 0x1A, 0, 0,
+        0xEF, 0xBE, 0xAD, 0xDE, 0x0D, 0x0C, 0x0B, 0x0A, 0x85, 0x1A, 0, 0,
         0x05, 0x04, 0x03, 0x02, 0x01, 0, 0, 0, 0, 0, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF,
         1, 0, 0, 0, 0, 2, 0, 0, 0, 0, 3, 0, 0, 0, 0,
     ];
@@ -85,7 +82,7 @@ fn pixels() {
             core: 17 * 256 + 4,
             seq: 0xFFFF,
             session: SESSION,
-            report,
+            message,
         },
         &expected,
     );
@@ -93,8 +90,7 @@ fn pixels() {
 
 #[test]
 fn farewell() {
-    let report = Report::Farewell(Farewell {
-        units: 500,
+    let message = Message::Farewell(Farewell {
         rejected: 3,
         stack_used: 0x0AF0,
         stack_size: 0x4000,
@@ -104,7 +100,7 @@ fn farewell() {
         0, 0,
         0x07, 0x01, 0xFF, 0x31, 0, 0, 0, 0,
         0x03, 0x01, 0xF4, 0x01,
-        0x41, 0x10, 0x55, 0x5E, 0xF4, 0x01, 0, 0, 3, 0, 0, 0,
+        0x41, 0x10, 0x55, 0x5E, 3, 0, 0, 0,
         0xF0, 0x0A, 0, 0, 0, 0x40, 0, 0,
     ];
     from_core(
@@ -112,7 +108,7 @@ fn farewell() {
             core: 16,
             seq: 500,
             session: SESSION,
-            report,
+            message,
         },
         &expected,
     );
@@ -133,9 +129,9 @@ fn fault() {
             core: 17,
             seq: 0,
             session: SESSION,
-            report: Report::Fault(LastWords {
+            message: Message::Fault(FaultInfo {
                 address: None,
-                words: "bad é",
+                reason: "bad é",
             }),
         },
         &expected,
@@ -157,9 +153,9 @@ fn fault_at_an_address() {
             core: 0,
             seq: 0,
             session: SESSION,
-            report: Report::Fault(LastWords {
+            message: Message::Fault(FaultInfo {
                 address: Some(0x1A34),
-                words: "no",
+                reason: "no",
             }),
         },
         &expected,
@@ -175,7 +171,7 @@ fn lease() {
         0x01, 0x02, 0x07, 0x00,
         0x41, 0x10, 0x55, 0x5E, 0x00, 0x10, 0, 0, 8, 0, 0, 0,
     ];
-    let order = Order::Lease {
+    let command = Command::Lease {
         number: 7,
         first: 4096,
         count: 8,
@@ -184,7 +180,7 @@ fn lease() {
         ToCore {
             core: 35,
             session: SESSION,
-            order,
+            command,
         },
         &expected,
     );
@@ -204,7 +200,7 @@ fn stop() {
         ToCore {
             core: 3854 * 17 + 14,
             session: SESSION,
-            order: Order::Stop,
+            command: Command::Stop,
         },
         &expected,
     );

@@ -2,19 +2,17 @@
 
 use wire::boot::{self, PixelOrder, Termination};
 use wire::{
-    Boot, DecodeError, FromCore, LastWords, MAX_PAYLOAD, Name, Order, PixelSums, Pixels, Report, SumsError,
-    ToCore,
+    Boot, Command, DecodeError, FaultInfo, FromCore, MAX_PAYLOAD, Message, Name, PixelSums, Pixels,
+    SumsError, ToCore,
 };
 
 fn pixels_packet() -> Vec<u8> {
     let sums = PixelSums::new(&[[1, 2, 3]; 16]).unwrap();
-    let report = Report::Pixels(Pixels {
+    let message = Message::Pixels(Pixels {
         unit: 1,
         epoch: 0,
         samples: 4096,
         scene: 7,
-        free_leases: 0,
-        rejected: 0,
         ticks: 1,
         rays: 1,
         sums,
@@ -24,7 +22,7 @@ fn pixels_packet() -> Vec<u8> {
         core: 3,
         seq: 0,
         session: 9,
-        report,
+        message,
     }
     .encode(&mut out);
     out[..len].to_vec()
@@ -38,14 +36,17 @@ fn patched(packet: &[u8], offset: usize, bytes: &[u8]) -> Vec<u8> {
 }
 
 #[test]
-fn a_full_packet_is_exactly_as_long_as_allowed() {
-    assert_eq!(pixels_packet().len(), MAX_PAYLOAD);
+fn a_full_packet_is_not_longer_than_allowed() {
+    assert_eq!(pixels_packet().len(), 38 + 16 * 15);
+    assert!(pixels_packet().len() <= MAX_PAYLOAD);
 }
 
 #[test]
 fn every_cut_of_a_packet_is_refused() {
     let packet = pixels_packet();
-    for len in 0..packet.len() {
+    // But where a whole number of pixels is left: a datagram is not cut, and its checksum would tell.
+    let whole = |len: usize| len > 38 && (len - 38).is_multiple_of(15);
+    for len in (0..packet.len()).filter(|&len| !whole(len)) {
         assert_eq!(
             FromCore::decode(&packet[..len]),
             Err(DecodeError::Truncated),
@@ -99,9 +100,16 @@ fn pixel_and_sample_counts_are_checked() {
     refused(24, &[0, 0], DecodeError::Range); // no samples
     refused(24, &[6, 0], DecodeError::Range); // not a multiple of the 2x2 sub-pixels
     refused(24, &[0x04, 0x10], DecodeError::Range); // 4100: the sums could overflow
-    refused(30, &[0], DecodeError::Range); // no pixels
-    refused(30, &[17], DecodeError::Range);
-    refused(30, &[15], DecodeError::TooLong);
+    let of_pixels = |pixels: usize| FromCore::decode(&packet[..38 + 15 * pixels]).map(|_| ());
+    assert_eq!(of_pixels(0), Err(DecodeError::Truncated));
+    assert_eq!(of_pixels(1), Ok(()));
+    assert_eq!(
+        FromCore::decode(&packet[..38 + 14]),
+        Err(DecodeError::Truncated),
+        "half a pixel"
+    );
+    let one_more = [&packet[..], &[0; 15]].concat();
+    assert_eq!(FromCore::decode(&one_more), Err(DecodeError::TooLong));
 }
 
 #[test]
@@ -128,15 +136,15 @@ fn the_brightest_picture_fits() {
 #[test]
 fn leases_are_checked() {
     let mut out = [0; MAX_PAYLOAD];
-    let encoded = |order, out: &mut [u8; MAX_PAYLOAD]| {
+    let encoded = |command, out: &mut [u8; MAX_PAYLOAD]| {
         ToCore {
             core: 0,
             session: 1,
-            order,
+            command,
         }
         .encode(out)
     };
-    let lease = |first, count| Order::Lease {
+    let lease = |first, count| Command::Lease {
         number: 1,
         first,
         count,
@@ -158,7 +166,10 @@ fn fault_packet(address: Option<u32>, words: &str) -> Vec<u8> {
         core: 0,
         seq: 0,
         session: 0,
-        report: Report::Fault(LastWords { address, words }),
+        message: Message::Fault(FaultInfo {
+            address,
+            reason: words,
+        }),
     }
     .encode(&mut out);
     out[..len].to_vec()
@@ -169,12 +180,12 @@ fn last_words_are_cut_between_characters() {
     let words = "é".repeat(200);
     let words = format!("x{words}");
     let packet = fault_packet(Some(0x1A34), &words);
-    let Report::Fault(kept) = FromCore::decode(&packet).unwrap().report else {
+    let Message::Fault(kept) = FromCore::decode(&packet).unwrap().message else {
         panic!("not a fault")
     };
     assert_eq!(kept.address, Some(0x1A34));
-    assert_eq!(kept.words.len(), 255);
-    assert!(words.starts_with(kept.words));
+    assert_eq!(kept.reason.len(), 255);
+    assert!(words.starts_with(kept.reason));
 }
 
 #[test]

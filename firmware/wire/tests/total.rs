@@ -5,8 +5,8 @@ use std::num::NonZeroU8;
 use proptest::prelude::*;
 use wire::boot::{self, PixelOrder, Termination};
 use wire::{
-    Boot, Farewell, FromCore, Hello, LastWords, MAX_PAYLOAD, MAX_SAMPLES, Name, Order, PixelSums, Pixels,
-    Report, SUM_MAX, ToCore,
+    Boot, Command, Farewell, FaultInfo, FromCore, Hello, MAX_PAYLOAD, MAX_SAMPLES, Message, Name, PixelSums,
+    Pixels, SUM_MAX, ToCore,
 };
 
 /// Checks one payload against both decoders.
@@ -38,52 +38,52 @@ fn sums() -> impl Strategy<Value = PixelSums> {
 
 prop_compose! {
     fn pixels()(
-        unit: u32, epoch: u16, quads in 1..=MAX_SAMPLES / 4, scene: u32, free_leases: u8, rejected: u16,
+        unit: u32, epoch: u16, quads in 1..=MAX_SAMPLES / 4, scene: u32,
         ticks: u32, rays: u32, sums in sums(),
     ) -> Pixels {
-        Pixels { unit, epoch, samples: 4 * quads, scene, free_leases, rejected, ticks, rays, sums }
+        Pixels { unit, epoch, samples: 4 * quads, scene, ticks, rays, sums }
     }
 }
 
 prop_compose! {
-    fn hello()(version: u16, free_leases: u8, scene: u32, board in name(), profile in name()) -> Hello {
-        Hello { version, free_leases, scene, board, profile }
+    fn hello()(version: u16, scene: u32, board in name(), profile in name()) -> Hello {
+        Hello { version, scene, board, profile }
     }
 }
 
 prop_compose! {
-    fn farewell()(units: u32, rejected: u32, stack_used: u32, stack_size: u32) -> Farewell {
-        Farewell { units, rejected, stack_used, stack_size }
+    fn farewell()(rejected: u32, stack_used: u32, stack_size: u32) -> Farewell {
+        Farewell { rejected, stack_used, stack_size }
     }
 }
 
 prop_compose! {
-    fn last_words()(
-        address: Option<u32>, words in prop_oneof![Just(""), Just("panicked at unit.rs:7"), Just("µ")],
-    ) -> LastWords<'static> {
-        LastWords { address, words }
+    fn fault()(
+        address: Option<u32>, reason in prop_oneof![Just(""), Just("panicked at unit.rs:7"), Just("µ")],
+    ) -> FaultInfo<'static> {
+        FaultInfo { address, reason }
     }
 }
 
-fn report() -> impl Strategy<Value = Report<'static>> {
+fn message() -> impl Strategy<Value = Message<'static>> {
     prop_oneof![
-        hello().prop_map(Report::Hello),
-        pixels().prop_map(Report::Pixels),
-        farewell().prop_map(Report::Farewell),
-        last_words().prop_map(Report::Fault),
+        hello().prop_map(Message::Hello),
+        pixels().prop_map(Message::Pixels),
+        farewell().prop_map(Message::Farewell),
+        fault().prop_map(Message::Fault),
     ]
 }
 
-fn order() -> impl Strategy<Value = Order> {
+fn command() -> impl Strategy<Value = Command> {
     let lease = (any::<u16>(), any::<u32>(), 1u32..).prop_filter_map(
         "the last unit's id must fit",
         |(number, first, count)| {
             first
                 .checked_add(count - 1)
-                .map(|_| Order::Lease { number, first, count })
+                .map(|_| Command::Lease { number, first, count })
         },
     );
-    prop_oneof![lease, Just(Order::Stop)]
+    prop_oneof![lease, Just(Command::Stop)]
 }
 
 proptest! {
@@ -97,15 +97,15 @@ proptest! {
     /// Noise alone seldom gets past the headers: valid packets with some bytes changed and cut go deeper.
     #[test]
     fn damaged_packets(
-        core: u16, seq: u16, session: u32, report in report(), order in order(),
+        core: u16, seq: u16, session: u32, message in message(), command in command(),
         damage in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 0..4), cut in 0usize..4,
     ) {
         for towards_host in [true, false] {
             let mut out = [0xa5; MAX_PAYLOAD];
             let len = if towards_host {
-                FromCore { core, seq, session, report }.encode(&mut out)
+                FromCore { core, seq, session, message }.encode(&mut out)
             } else {
-                ToCore { core, session, order }.encode(&mut out)
+                ToCore { core, session, command }.encode(&mut out)
             };
             for (at, byte) in &damage {
                 out[at.index(len)] = *byte;
@@ -115,8 +115,8 @@ proptest! {
     }
 
     #[test]
-    fn packets_from_cores_return(core: u16, seq: u16, session: u32, report in report()) {
-        let packet = FromCore { core, seq, session, report };
+    fn packets_from_cores_return(core: u16, seq: u16, session: u32, message in message()) {
+        let packet = FromCore { core, seq, session, message };
         let mut out = [0xa5; MAX_PAYLOAD];
         let len = packet.encode(&mut out);
         prop_assert!(len <= MAX_PAYLOAD);
@@ -124,8 +124,8 @@ proptest! {
     }
 
     #[test]
-    fn packets_to_cores_return(core: u16, session: u32, order in order()) {
-        let packet = ToCore { core, session, order };
+    fn packets_to_cores_return(core: u16, session: u32, command in command()) {
+        let packet = ToCore { core, session, command };
         let mut out = [0xa5; MAX_PAYLOAD];
         let len = packet.encode(&mut out);
         prop_assert_eq!(ToCore::decode(&out[..len]), Ok(packet));

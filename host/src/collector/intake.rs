@@ -3,7 +3,7 @@
 use std::fmt;
 
 use wire::boot::PixelOrder;
-use wire::{DecodeError, FromCore, Hello, Name, Pixels, Report};
+use wire::{DecodeError, FromCore, Hello, Message, Name, Pixels};
 
 use crate::session::Session;
 
@@ -61,10 +61,10 @@ pub fn judge<'a>(session: &Session, payload: &'a [u8]) -> Result<FromCore<'a>, R
     if packet.core >= session.cores {
         return Err(Rejection::Core(packet.core));
     }
-    match &packet.report {
-        Report::Hello(hello) => judge_hello(session, hello)?,
-        Report::Pixels(pixels) => judge_pixels(session, pixels)?,
-        Report::Farewell(_) | Report::Fault(_) => {}
+    match &packet.message {
+        Message::Hello(hello) => judge_hello(session, hello)?,
+        Message::Pixels(pixels) => judge_pixels(session, pixels)?,
+        Message::Farewell(_) | Message::Fault(_) => {}
     }
     Ok(packet)
 }
@@ -112,8 +112,6 @@ mod tests {
             epoch: 0,
             samples: 4,
             scene: session.scene_id,
-            free_leases: 1,
-            rejected: 0,
             ticks: 1,
             rays: 1,
             sums: PixelSums::new(&[[1; 3]; 16]).expect("small sums"),
@@ -126,10 +124,10 @@ mod tests {
             core: 0,
             seq: 0,
             session: session.id,
-            report: Report::Pixels(pixels),
+            message: Message::Pixels(pixels),
         };
         change(&mut packet, &mut pixels);
-        packet.report = Report::Pixels(pixels);
+        packet.message = Message::Pixels(pixels);
         let mut payload = [0; MAX_PAYLOAD];
         let len = packet.encode(&mut payload);
         judge(session, &payload[..len]).err()
@@ -187,7 +185,6 @@ mod tests {
         let session = small(1, PixelOrder::Leased);
         let hello = Hello {
             version: wire::VERSION,
-            free_leases: 4,
             scene: session.scene_id,
             board: Name::new("versatilepb"),
             profile: session.profile,

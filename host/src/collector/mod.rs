@@ -23,7 +23,7 @@ mod socket;
 use std::net::SocketAddr;
 use std::time::Duration;
 
-use wire::Farewell;
+use wire::{Farewell, Name};
 
 use crate::film::Film;
 use crate::report::Packets;
@@ -51,6 +51,8 @@ pub struct CoreRecord {
     pub rays: u64,
     /// Its packet numbers.
     pub sequence: Sequence,
+    /// Its board, as it says itself.
+    pub board: Option<Name>,
     /// What it said when it was told to stop.
     pub farewell: Option<Farewell>,
     /// What it said when it failed, in the life it has or had last.

@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use wire::boot::PixelOrder;
-use wire::{FromCore, MAX_PAYLOAD, Order, Pixels, Report, ToCore};
+use wire::{Command, FromCore, MAX_PAYLOAD, Message, Pixels, ToCore};
 
 use super::attended::Attended;
 use super::intake::{Rejection, judge};
@@ -225,17 +225,17 @@ impl<'a> Run<'a> {
             return Ok(());
         };
         let (core, now) = (packet.core, self.now);
-        match packet.report {
-            Report::Hello(_) => {
+        match packet.message {
+            Message::Hello(_) => {
                 if let Work::Leased(leases) = &mut self.work {
                     leases.idle(core, self.emptied, now);
                 }
             }
-            Report::Pixels(pixels) => self.take_pixels(core, &pixels)?,
-            Report::Farewell(_) => {}
+            Message::Pixels(pixels) => self.take_pixels(core, &pixels)?,
+            Message::Farewell(_) => {}
             // Its end follows, and says whether it has another life.
-            Report::Fault(_) if self.fleet.sees_ends() => self.take_leases_back(core),
-            Report::Fault(fault) => self.bury(core, fault.words),
+            Message::Fault(_) if self.fleet.sees_ends() => self.take_leases_back(core),
+            Message::Fault(fault) => self.bury(core, fault.reason),
         }
         self.hand_out(core);
         Ok(())
@@ -254,23 +254,26 @@ impl<'a> Run<'a> {
         let record = &mut self.cores[usize::from(packet.core)];
         record.source = Some(source);
         let before = record.heard.replace(self.now);
-        match packet.report {
-            Report::Pixels(_) => {
+        match packet.message {
+            Message::Pixels(_) => {
                 record.sequence.received(packet.seq);
                 if let Some(before) = before {
                     self.silence.unit_after(self.now.saturating_sub(before));
                 }
             }
-            Report::Hello(_) => record.sequence.sent_before(packet.seq),
-            Report::Farewell(farewell) => {
+            Message::Hello(hello) => {
+                record.board = Some(hello.board);
+                record.sequence.sent_before(packet.seq);
+            }
+            Message::Farewell(farewell) => {
                 record.sequence.sent_before(packet.seq);
                 record.farewell = Some(farewell);
             }
-            Report::Fault(fault) => {
+            Message::Fault(fault) => {
                 let image = self.fleet.image(packet.core);
                 record.last_words = Some(match image {
                     Some(elf) => symbols::explained(elf, &fault),
-                    None => fault.words.to_owned(),
+                    None => fault.reason.to_owned(),
                 });
             }
         }
@@ -347,7 +350,7 @@ impl<'a> Run<'a> {
         {
             self.send(
                 core,
-                Order::Lease {
+                Command::Lease {
                     number: lease.number,
                     first: lease.first,
                     count: lease.count,
@@ -397,12 +400,12 @@ impl<'a> Run<'a> {
     }
 
     /// Sends to where the core was last heard. A packet that cannot be sent is a lost one, and made good like any other.
-    fn send(&self, core: u16, order: Order) {
+    fn send(&self, core: u16, command: Command) {
         let mut payload = [0; MAX_PAYLOAD];
         let len = ToCore {
             core,
             session: self.session.id,
-            order,
+            command,
         }
         .encode(&mut payload);
         if let Some(source) = self.cores[usize::from(core)].source {
@@ -501,7 +504,7 @@ impl<'a> Run<'a> {
                 return Ok(());
             }
             if self.now >= next_stop {
-                waiting.iter().for_each(|&core| self.send(core, Order::Stop));
+                waiting.iter().for_each(|&core| self.send(core, Command::Stop));
                 next_stop = self.now + STOP_EVERY;
             }
             if let Some((len, source)) = self.receive(&mut buffer)? {

@@ -12,7 +12,7 @@ use node::{Clock, Fault, Network, Outcome, SendError, StackUse, TICKS_PER_SECOND
 use rustix::process::{Resource, Rlimit, getrlimit, setpriority_process, setrlimit};
 use tracer::profile::{Paper, Precise};
 use tracer::scene::All;
-use wire::{Boot, MAX_PAYLOAD, Name, Order, ToCore};
+use wire::{Boot, Command, MAX_PAYLOAD, Name, ToCore};
 
 use super::FleetError;
 use crate::arithmetic::Arithmetic;
@@ -162,7 +162,7 @@ impl Loopback {
             order: ToCore {
                 core: boot.core,
                 session: boot.session,
-                order: Order::Stop,
+                command: Command::Stop,
             },
         })
     }

@@ -335,10 +335,12 @@ pub(super) fn per_core(record: &CoreRecord, counts_instructions: bool) -> report
     let stack = record.farewell.filter(|farewell| farewell.stack_size > 0);
     report::Core {
         core: record.core,
+        board: record.board.map(|board| board.to_string()),
         units: record.units,
         ticks: counts_instructions.then_some(record.ticks),
         stack_bytes: stack.map(|farewell| farewell.stack_used),
         stack_size: stack.map(|farewell| farewell.stack_size),
+        rejected: record.farewell.map(|farewell| farewell.rejected),
         restarts: record.restarts.len(),
         fault: record.fault().map(str::to_owned),
     }

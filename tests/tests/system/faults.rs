@@ -15,7 +15,7 @@ use host::session::Route;
 use host::symbols::{Place, explained};
 use tracer::profile::Precise;
 use whole_system::{cornell, film, plan, probe, qemu, repository};
-use wire::LastWords;
+use wire::FaultInfo;
 
 /// One of the boards' probes, and what it says until its end.
 fn ended(board: Board, name: &str) -> (PathBuf, String) {
@@ -54,14 +54,14 @@ fn the_address_of_a_fault_is_one_of_the_probe_s_own_lines() {
 fn a_panic_is_traced_to_its_function_by_the_line_it_names() {
     for board in Board::ALL {
         let (elf, said) = ended(board, "panic_probe");
-        let words = LastWords {
+        let words = FaultInfo {
             address: None,
-            words: said.trim(),
+            reason: said.trim(),
         };
         let explained = explained(&elf, &words);
         println!("{board}: {explained}");
         let (panic, place) = explained.split_once(", in ").unwrap();
-        assert_eq!(panic, words.words);
+        assert_eq!(panic, words.reason);
         // The address leads back to the line that the core has named.
         let found = Place::of(&elf, address(place)).unwrap();
         assert!(place.starts_with(&found.function), "{place}");

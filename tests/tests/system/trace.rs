@@ -14,7 +14,7 @@ use host::job::{JobError, TraceOptions, trace};
 use serde_json::Value;
 use tempfile::TempDir;
 use whole_system::{oddly_named_folder, repository};
-use wire::{FromCore, Order, Report, ToCore};
+use wire::{FromCore, Message, ToCore, to_core};
 
 const COLLECTOR: Ipv4Addr = Ipv4Addr::new(10, 0, 2, 2);
 const CORE: u16 = 1;
@@ -124,14 +124,14 @@ fn fields(datagram: &Datagram) -> (u16, u16, [u32; 3]) {
 }
 
 fn expected_from_core(packet: &FromCore<'_>) -> (u16, u16, [u32; 3]) {
-    let (command, arg2, arg3) = match &packet.report {
-        Report::Hello(hello) => ("HELLO", hello.version.into(), hello.free_leases.into()),
-        Report::Pixels(pixels) => {
+    let (command, arg2, arg3) = match &packet.message {
+        Message::Hello(hello) => ("HELLO", hello.version.into(), hello.scene),
+        Message::Pixels(pixels) => {
             let samples = u32::from(pixels.samples);
             ("PIXELS", pixels.unit, samples << 16 | u32::from(pixels.epoch))
         }
-        Report::Farewell(farewell) => ("FAREWELL", farewell.units, farewell.rejected),
-        Report::Fault(fault) => {
+        Message::Farewell(farewell) => ("FAREWELL", farewell.rejected, farewell.stack_used),
+        Message::Fault(fault) => {
             let known = fault.address.is_some();
             ("FAULT", fault.address.unwrap_or(0), known.into())
         }
@@ -140,9 +140,11 @@ fn expected_from_core(packet: &FromCore<'_>) -> (u16, u16, [u32; 3]) {
 }
 
 fn expected_to_core(packet: &ToCore) -> (u16, u16, [u32; 3]) {
-    match packet.order {
-        Order::Lease { number, first, count } => (numbered("LEASE"), number, [packet.session, first, count]),
-        Order::Stop => (numbered("STOP"), 0, [packet.session, 0, 0]),
+    match packet.command {
+        to_core::Command::Lease { number, first, count } => {
+            (numbered("LEASE"), number, [packet.session, first, count])
+        }
+        to_core::Command::Stop => (numbered("STOP"), 0, [packet.session, 0, 0]),
     }
 }
 

@@ -8,7 +8,7 @@ use std::rc::Rc;
 use node::{Clock, Fault, Network, Outcome, SendError, StackUse, Worker};
 use tracer::unit::Sums;
 use wire::boot::{PixelOrder, Termination};
-use wire::{Boot, FromCore, LastWords, MAX_PAYLOAD, Name, Order, Pixels, Report, ToCore};
+use wire::{Boot, Command, FaultInfo, FromCore, MAX_PAYLOAD, Message, Name, Pixels, ToCore};
 
 pub(crate) const SESSION: u32 = 0xCAFE_F00D;
 pub(crate) const RENDER_TICKS: u32 = 1000;
@@ -45,19 +45,19 @@ pub(crate) fn boot(order: PixelOrder) -> Boot<'static> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Said {
     pub(crate) seq: u16,
-    pub(crate) report: Report<'static>,
+    pub(crate) message: Message<'static>,
 }
 
 impl Said {
     pub(crate) fn pixels(&self) -> Option<Pixels> {
-        match self.report {
-            Report::Pixels(pixels) => Some(pixels),
+        match self.message {
+            Message::Pixels(pixels) => Some(pixels),
             _ => None,
         }
     }
 
     pub(crate) fn is_hello(&self) -> bool {
-        matches!(self.report, Report::Hello(_))
+        matches!(self.message, Message::Hello(_))
     }
 }
 
@@ -72,12 +72,12 @@ pub(crate) struct World {
 }
 
 impl World {
-    pub(crate) fn post(&mut self, order: Order) {
-        self.inbox.push_back(packet(1, SESSION, order));
+    pub(crate) fn post(&mut self, command: Command) {
+        self.inbox.push_back(packet(1, SESSION, command));
     }
 
     pub(crate) fn lease(&mut self, number: u16, first: u32, count: u32) {
-        self.post(Order::Lease { number, first, count });
+        self.post(Command::Lease { number, first, count });
     }
 
     pub(crate) fn units(&self) -> Vec<u32> {
@@ -89,9 +89,14 @@ impl World {
     }
 }
 
-pub(crate) fn packet(core: u16, session: u32, order: Order) -> Vec<u8> {
+pub(crate) fn packet(core: u16, session: u32, command: Command) -> Vec<u8> {
     let mut out = [0; MAX_PAYLOAD];
-    let len = ToCore { core, session, order }.encode(&mut out);
+    let len = ToCore {
+        core,
+        session,
+        command,
+    }
+    .encode(&mut out);
     out[..len].to_vec()
 }
 
@@ -112,12 +117,12 @@ impl<H: FnMut(&mut World, Said)> Network for FakeNetwork<H> {
             core,
             seq,
             session,
-            report,
+            message,
         } = FromCore::decode(payload).expect("a core sends valid packets");
         assert_eq!((core, session), (1, SESSION));
         let said = Said {
             seq,
-            report: owned(report),
+            message: owned(message),
         };
         world.said.push(said);
         assert!(world.said.len() < 10_000, "the worker does not come to an end");
@@ -140,15 +145,15 @@ impl<H: FnMut(&mut World, Said)> Network for FakeNetwork<H> {
     }
 }
 
-fn owned(report: Report<'_>) -> Report<'static> {
-    match report {
-        Report::Fault(fault) => Report::Fault(LastWords {
+fn owned(message: Message<'_>) -> Message<'static> {
+    match message {
+        Message::Fault(fault) => Message::Fault(FaultInfo {
             address: fault.address,
-            words: String::from(fault.words).leak(),
+            reason: String::from(fault.reason).leak(),
         }),
-        Report::Hello(hello) => Report::Hello(hello),
-        Report::Pixels(pixels) => Report::Pixels(pixels),
-        Report::Farewell(farewell) => Report::Farewell(farewell),
+        Message::Hello(hello) => Message::Hello(hello),
+        Message::Pixels(pixels) => Message::Pixels(pixels),
+        Message::Farewell(farewell) => Message::Farewell(farewell),
     }
 }
 

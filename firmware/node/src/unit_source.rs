@@ -7,7 +7,7 @@ use crate::leases::Leases;
 
 /// Where a core's units come from.
 #[derive(Debug)]
-pub(crate) enum Order {
+pub(crate) enum UnitSource {
     /// The host says which.
     Leased,
     /// One after the other, wrapping at `units`.
@@ -16,8 +16,8 @@ pub(crate) enum Order {
     Stochastic { limit: u32, random: SplitMix },
 }
 
-impl Order {
-    /// The order the boot block asks for, over `runs` pixel runs and `units` units.
+impl UnitSource {
+    /// The source the boot block asks for, over `runs` pixel runs and `units` units.
     pub(crate) fn new(boot: &Boot<'_>, runs: u32, units: u32) -> Self {
         match boot.order {
             PixelOrder::Leased => Self::Leased,
@@ -125,12 +125,12 @@ mod tests {
     fn stochastic_units_cover_the_runs_evenly() {
         let (mut counts, runs) = ([0u32; 64], 64);
         let random = SplitMix::new(42);
-        let mut order = Order::Stochastic {
+        let mut source = UnitSource::Stochastic {
             limit: last_whole_pass(runs),
             random,
         };
         for _ in 0..64_000 {
-            let unit = order.next(&mut Leases::default()).unwrap();
+            let unit = source.next(&mut Leases::default()).unwrap();
             counts[(unit % runs) as usize] += 1;
         }
         let chi2: f64 = counts
@@ -142,8 +142,8 @@ mod tests {
 
     #[test]
     fn sequential_wraps() {
-        let mut order = Order::Sequential { next: 3, units: 5 };
-        let units: [_; 4] = core::array::from_fn(|_| order.next(&mut Leases::default()).unwrap());
+        let mut source = UnitSource::Sequential { next: 3, units: 5 };
+        let units: [_; 4] = core::array::from_fn(|_| source.next(&mut Leases::default()).unwrap());
         assert_eq!(units, [3, 4, 0, 1]);
     }
 }
