@@ -98,11 +98,11 @@ impl PixelSums {
     }
 
     pub(crate) fn from_bytes(bytes: &[u8]) -> Result<Self, DecodeError> {
+        let mut packed = [0; Self::MAX_LEN];
+        let room = packed.get_mut(..bytes.len()).ok_or(DecodeError::TooLong)?;
         if bytes.is_empty() || !bytes.len().is_multiple_of(PIXEL_LEN) {
             return Err(DecodeError::Truncated);
         }
-        let mut packed = [0; Self::MAX_LEN];
-        let room = packed.get_mut(..bytes.len()).ok_or(DecodeError::TooLong)?;
         room.copy_from_slice(bytes);
         let pixels = (bytes.len() / PIXEL_LEN) as u8;
         Ok(Self { packed, pixels })
