@@ -4,18 +4,18 @@
 //! which every combination would be a different crate graph:
 //!
 //! - `TRACER_PROFILE`: `precise` (the default) or `paper`;
-//! - `TRACER_NEEDS`: a comma-separated list of `diffuse`, `mirror`, `glass`, `twosided` and `roulette`; all of them by default.
+//! - `TRACER_NEEDS`: a comma-separated list of words of [`tracer::scene::Capability`]; all of them by default.
 
 use std::path::Path;
 use std::{env, fs};
 
-const NEEDS: [&str; 5] = ["diffuse", "mirror", "glass", "twosided", "roulette"];
+use tracer::scene::{Capabilities, Capability};
 
 fn main() {
     let out = env::var("OUT_DIR").expect("cargo sets OUT_DIR");
     println!("cargo::rerun-if-env-changed=TRACER_PROFILE");
     println!("cargo::rerun-if-env-changed=TRACER_NEEDS");
-    let image = profile().and_then(|profile| Ok(image(profile, &needs()?)));
+    let image = profile().and_then(|profile| Ok(image(profile, needs()?)));
     match image {
         Ok(image) => fs::write(Path::new(&out).join("image.rs"), image).expect("OUT_DIR is writable"),
         // Cargo shows this as an error and ends the build.
@@ -33,37 +33,47 @@ fn profile() -> Result<&'static str, String> {
     }
 }
 
-fn needs() -> Result<Vec<String>, String> {
+fn needs() -> Result<Capabilities, String> {
     let Ok(list) = env::var("TRACER_NEEDS") else {
-        return Ok(NEEDS.map(String::from).to_vec());
+        return Ok(Capabilities::ALL);
     };
-    let words: Vec<String> = list
-        .split(',')
-        .map(str::trim)
-        .filter(|word| !word.is_empty())
-        .map(String::from)
-        .collect();
-    match words.iter().find(|word| !NEEDS.contains(&word.as_str())) {
-        None => Ok(words),
-        Some(word) => Err(format!(
-            "TRACER_NEEDS has the word `{word}`; it must be a comma-separated list of {}",
-            NEEDS.join(", ")
-        )),
-    }
+    let words = list.split(',').map(str::trim).filter(|word| !word.is_empty());
+    words
+        .map(capability)
+        .try_fold(Capabilities::NONE, |needs, found| Ok(needs.with(found?)))
 }
 
-fn image(profile: &str, needs: &[String]) -> String {
-    let mut image = format!(
-        "/// The arithmetic this image was built with.\n\
+fn capability(word: &str) -> Result<Capability, String> {
+    let all = Capability::ALL;
+    all.iter()
+        .copied()
+        .find(|capability| capability.word() == word)
+        .ok_or_else(|| {
+            let words: Vec<&str> = all.iter().map(|capability| capability.word()).collect();
+            format!(
+                "TRACER_NEEDS has the word `{word}`; it must be a comma-separated list of {}",
+                words.join(", ")
+            )
+        })
+}
+
+fn image(profile: &str, needs: Capabilities) -> String {
+    let needs: Vec<String> = needs
+        .iter()
+        .map(|capability| format!("Capability::{}", capability.identifier()))
+        .collect();
+    format!(
+        "use tracer::scene::{{Capabilities, Capability, Needs}};\n\n\
+         /// The arithmetic this image was built with.\n\
          pub type ImageProfile = tracer::profile::{profile};\n\n\
+         /// The integrator, capable of what this image's scene needs.\n\
+         pub type ImageIntegrator = tracer::integrator::Path<ImageProfile, ImageNeeds>;\n\n\
          /// What this image's scene needs of the tracer.\n\
          #[derive(Clone, Copy, Debug)]\n\
          pub enum ImageNeeds {{}}\n\n\
-         impl tracer::scene::Needs for ImageNeeds {{\n"
-    );
-    for need in NEEDS {
-        let needed = needs.iter().any(|word| word == need);
-        image += &format!("    const {}: bool = {needed};\n", need.to_uppercase());
-    }
-    image + "}\n"
+         impl Needs for ImageNeeds {{\n    \
+             const NEEDS: Capabilities = Capabilities::of(&[{}]);\n\
+         }}\n",
+        needs.join(", ")
+    )
 }

@@ -42,7 +42,9 @@ pub mod root;
 pub mod unit;
 pub mod warp;
 
-pub use fixed::types::{I2F30, I16F16, I32F32, I48F16};
+pub use fixed::types::{
+    I1F31, I2F30, I4F28, I16F16, I18F46, I32F32, I36F28, I48F16, U0F32, U16F16, U19F45, U32F32, U48F16,
+};
 
 /// The README's examples.
 #[cfg(doctest)]

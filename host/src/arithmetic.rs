@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use fixedmath::I16F16;
 use tracer::profile::{Paper, Precise, Profile};
 
 /// A named set of arithmetic choices; the tracer is compiled once for each.
@@ -26,8 +27,8 @@ impl Arithmetic {
         }
     }
 
-    /// The profile's own self-intersection epsilon, in 16:16.
-    pub const fn epsilon(self) -> i32 {
+    /// The profile's own self-intersection epsilon.
+    pub const fn epsilon(self) -> I16F16 {
         match self {
             Self::Paper => Paper::EPSILON,
             Self::Precise => Precise::EPSILON,

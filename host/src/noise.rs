@@ -6,9 +6,11 @@
 //! not. So where the two pixels differ by something that noise would feel, the picture's own samples are taken again.
 
 use rayon::prelude::*;
-use tracer::numbers::Numbers;
+use tracer::camera::Camera;
+use tracer::integrator::{Integrator, Path};
+use tracer::material::RadianceNumbers;
 use tracer::profile::Profile;
-use tracer::scene::{All, BlobError, Scene};
+use tracer::scene::{All, Scene};
 use tracer::unit::{Plan, walk};
 
 use crate::lockstep::Moments;
@@ -29,10 +31,8 @@ pub fn variance<P: Profile>(
     picture: &Picture,
     oracle: &Estimate,
     progress: impl Fn(u64) + Sync,
-) -> Result<Option<Vec<[f64; 3]>>, BlobError> {
-    let Some(variance) = &oracle.variance else {
-        return Ok(None);
-    };
+) -> Option<Vec<[f64; 3]>> {
+    let variance = oracle.variance.as_ref()?;
     let pixels = picture.pixels().iter().zip(oracle.picture.pixels()).zip(variance);
     let parted: Vec<bool> = pixels
         .map(|((picture, oracle), variance)| match (picture, oracle) {
@@ -42,39 +42,45 @@ pub fn variance<P: Profile>(
             _ => false,
         })
         .collect();
-    let runs = (0..plan.runs()).into_par_iter().map_init(
-        || Scene::<P::Numbers>::decode::<All>(&compiled.blob),
-        |scene, run| {
-            let extent = plan.extent(run);
-            let first = extent.first_pixel as usize;
-            let range = first..first + usize::from(extent.pixels);
-            progress(u64::from(extent.pixels) * u64::from(plan.spp));
-            if !parted[range.clone()].contains(&true) {
-                return Ok(variance[range].to_vec());
-            }
-            let scene = scene.as_ref().map_err(|error| *error)?;
-            Ok(own_variance::<P>(scene, compiled.exponent, plan, run))
-        },
-    );
-    let runs: Result<Vec<_>, BlobError> = runs.collect();
-    Ok(Some(runs?.concat()))
+    let (scene, path) = (compiled.view(), Path::<P, All>::new(plan));
+    let camera = Camera::new(&compiled.camera);
+    let spans = (0..plan.spans()).into_par_iter().map(|span| {
+        let extent = plan.extent(span);
+        let first = extent.first_pixel as usize;
+        let range = first..first + usize::from(extent.pixels);
+        progress(u64::from(extent.pixels) * u64::from(plan.spp));
+        if parted[range.clone()].contains(&true) {
+            own_variance(&path, &scene, &camera, compiled.exponent, plan, span)
+        } else {
+            variance[range].to_vec()
+        }
+    });
+    Some(spans.collect::<Vec<_>>().concat())
 }
 
-/// The variance of a run's pixels by their own samples.
+/// The variance of a span's pixels by their own samples.
 fn own_variance<P: Profile>(
-    scene: &Scene<P::Numbers>,
+    integrator: &impl Integrator<P>,
+    scene: &Scene<'_>,
+    camera: &Camera<P::Numbers>,
     exponent: i32,
     plan: &Plan,
-    run: u32,
+    span: u32,
 ) -> Vec<[f64; 3]> {
-    // Radiance is 32:32.
-    let unit = 2f64.powi(-32 - exponent);
-    let mut moments = vec![Moments::default(); usize::from(plan.extent(run).pixels)];
+    let unit = 2f64.powi(-exponent);
+    let mut moments = vec![Moments::default(); usize::from(plan.extent(span).pixels)];
     for pass in 0..plan.passes() {
-        walk::<P, All>(scene, plan, pass * plan.runs() + run, |pixel, sample| {
-            let radiance = sample.radiance.map(P::Numbers::radiance_bits);
-            moments[pixel].add(radiance.map(|bits| bits as f64 * unit));
-        });
+        walk(
+            integrator,
+            scene,
+            camera,
+            plan,
+            pass * plan.spans() + span,
+            |pixel, sample| {
+                let radiance = sample.radiance.map(P::Numbers::film_sum);
+                moments[pixel].add(radiance.map(|sum| sum.to_num::<f64>() * unit));
+            },
+        );
     }
     moments.iter().map(Moments::variance_of_mean).collect()
 }
@@ -108,9 +114,8 @@ mod tests {
     #[test]
     fn only_parted_pixels_have_a_variance_of_their_own() {
         let compiled = cornell();
-        let (fixed, mut oracle) = direct::estimate::<Precise>(&compiled, &PLAN).expect("it decodes");
+        let (fixed, mut oracle) = direct::estimate::<Precise>(&compiled, &PLAN);
         let first = variance::<Precise>(&compiled, &PLAN, &fixed.picture, &oracle, |_| ())
-            .expect("it decodes")
             .expect("the oracle has one");
         // An oracle that has missed a rare bright path, and whose variance so misses it too.
         let mut pixels = oracle.picture.pixels().to_vec();
@@ -119,7 +124,6 @@ mod tests {
         let all = oracle.variance.as_mut().expect("it has one");
         all[40] = [1e-12; 3];
         let second = variance::<Precise>(&compiled, &PLAN, &fixed.picture, &oracle, |_| ())
-            .expect("it decodes")
             .expect("the oracle has one");
         for channel in 0..3 {
             assert!(
@@ -127,6 +131,6 @@ mod tests {
                 "its own samples'"
             );
         }
-        assert_eq!(first[100..], second[100..], "other runs are as they were");
+        assert_eq!(first[100..], second[100..], "other spans are as they were");
     }
 }

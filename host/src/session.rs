@@ -77,9 +77,8 @@ impl Route {
 }
 
 /// Bytes of a core's data memory that the boot block of a scene takes.
-pub const fn boot_block_len(scene: &CompiledScene) -> usize {
-    // The camera is still a part of the scene.
-    boot::encoded_len(0, scene.blob.len())
+pub fn boot_block_len(scene: &CompiledScene) -> usize {
+    boot::encoded_len(size_of_val(&scene.camera), scene.blob.bytes().len())
 }
 
 impl Session {
@@ -103,7 +102,7 @@ impl Session {
             samples_per_unit: self.plan.samples_per_unit,
             spp: self.plan.spp,
             seed: self.plan.seed,
-            epsilon: self.plan.epsilon,
+            epsilon: self.plan.epsilon.to_bits(),
             termination: match self.plan.termination {
                 Termination::Roulette => boot::Termination::Roulette,
                 Termination::Depth(depth) => {
@@ -136,6 +135,8 @@ impl Session {
 
 #[cfg(test)]
 pub(crate) mod tests {
+    use fixedmath::I16F16;
+
     use super::*;
 
     /// A small session for tests: 32 x 10 pixels are 20 runs, 8 samples in units of 4 make 2 passes.
@@ -156,7 +157,7 @@ pub(crate) mod tests {
                 samples_per_unit: 4,
                 seed: 1,
                 termination: Termination::Depth(5),
-                epsilon: 16,
+                epsilon: I16F16::from_bits(16),
             },
             order,
             profile: Name::new("precise"),

@@ -51,21 +51,15 @@ pub fn plan<P: Profile>(width: u16, height: u16, spp: u32) -> Plan {
 }
 
 /// The film that any fleet must end with, rendered unit by unit in this process.
-///
-/// # Panics
-/// If the compiled scene is refused.
 pub fn film<P: Profile>(scene: &Scene, plan: &Plan) -> Film {
     let compiled = compile(scene, plan.width, plan.height);
-    direct::film::<P>(&compiled, plan).expect("a compiled scene is decoded")
+    direct::film::<P>(&compiled, plan)
 }
 
 /// `P`'s picture, with the variance that the lockstep oracle measures on the same paths.
-///
-/// # Panics
-/// If the compiled scene is refused.
 pub fn estimate<P: Profile>(scene: &Scene, plan: &Plan) -> (Estimate, Estimate) {
     let compiled = compile(scene, plan.width, plan.height);
-    direct::estimate::<P>(&compiled, plan).expect("a compiled scene is decoded")
+    direct::estimate::<P>(&compiled, plan)
 }
 
 /// The independent reference of `scene`, with roulette.

@@ -4,13 +4,15 @@
 
 #![expect(clippy::print_stdout, reason = "figures of tests, by helpers of theirs")]
 
+use fixedmath::U48F16;
 use host::compare::{Comparison, compare};
 use host::direct;
 use host::scene::{Scene, compile};
-use tracer::numbers::Mixed;
+use tracer::camera::Camera;
+use tracer::integrator::{Integrator, Path};
 use tracer::profile::Precise;
-use tracer::scene::All;
-use tracer::unit::{RUN, render};
+use tracer::scene::{All, Capability};
+use tracer::unit::{SPAN, render};
 use whole_system::{estimate, plan, reference, repository};
 use wire::SUM_MAX;
 
@@ -41,7 +43,7 @@ fn room(emission: f64, material: &str, reflectance: f64) -> Scene {
 fn balls_that_rays_start_in() {
     let scene = Scene::load(&repository("tests/scenes/cut-open.toml")).unwrap();
     let compiled = compile(&scene, 64, 48);
-    assert!(compiled.needs.two_sided);
+    assert!(compiled.needs.has(Capability::TwoSided));
     no_tile_is_off("cut open", &compared(&scene, 64, 48, 256));
     // One-sided, the balls that are cut are not seen: the test can fail.
     let mut blind = scene.clone();
@@ -73,16 +75,16 @@ fn sums_of_bright_mirrors_fit() {
     for emission in [200.0, 4095.0] {
         let scene = room(emission, "mirror", 0.999);
         let compiled = compile(&scene, 8, 8);
-        let decoded = tracer::scene::Scene::<Mixed>::decode::<All>(&compiled.blob).unwrap();
         let plan = plan::<Precise>(8, 8, 64);
+        let (path, camera) = (Path::<Precise, All>::new(&plan), Camera::new(&compiled.camera));
         for id in 0..plan.units().unwrap() {
-            let mut sums = [[0; 3]; RUN];
-            render::<Precise, All>(&decoded, &plan, id, &mut sums);
+            let mut sums = [[U48F16::ZERO; 3]; SPAN];
+            render(&path, &compiled.view(), &camera, &plan, id, &mut sums);
             let largest = sums.as_flattened().iter().max().unwrap();
-            assert!(*largest <= SUM_MAX, "{emission}: {largest}");
+            assert!(largest.to_bits() <= SUM_MAX, "{emission}: {largest}");
         }
         // A sample is emission / (1 - 0.999) in the mean and about as much off; the mean of 4,096 is 1/64 of that off.
-        let film = direct::film::<Precise>(&compiled, &plan).unwrap();
+        let film = direct::film::<Precise>(&compiled, &plan);
         let mean = film.picture().mean().unwrap()[0] / emission / 1000.0;
         assert!((mean - 1.0).abs() < 5.0 / 64.0, "{emission}: {mean}");
     }

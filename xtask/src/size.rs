@@ -7,7 +7,7 @@ use anyhow::{Context, ensure};
 use host::arithmetic::Arithmetic;
 use host::board::{Board, DTCM_BUDGET, ITCM_BUDGET};
 use host::console::say;
-use host::firmware::{self, ImageSize, Recipe};
+use host::firmware::{self, Capability, ImageSize, Recipe};
 use host::scene::{Scene, compile};
 use host::session::boot_block_len;
 use host::setup::{self, Toolchain, Wanted};
@@ -73,8 +73,7 @@ pub(crate) fn measure(toolchain: &Toolchain, scene: &Scene) -> anyhow::Result<Ve
             board,
             &Recipe {
                 profile,
-                needs: compiled.needs,
-                roulette: true,
+                needs: compiled.needs.with(Capability::Roulette),
                 log: None,
             },
         )?;

@@ -10,7 +10,7 @@ use anyhow::{Context, bail};
 use host::arithmetic::Arithmetic;
 use host::board::Board;
 use host::console::say;
-use host::firmware::{self, Recipe};
+use host::firmware::{self, Capability, Recipe};
 use host::interrupt;
 use host::log::Level;
 use host::scene::{Scene, compile};
@@ -153,13 +153,12 @@ fn firmware_steps(toolchain: &Toolchain, scene: &Scene) -> anyhow::Result<Vec<si
 
 /// Lints the boards' crates with the compiler that builds them, without a log and with all of it.
 fn lint_firmware(toolchain: &Toolchain, scene: &Scene) -> anyhow::Result<()> {
-    let needs = compile(scene, 4, 3).needs;
+    let needs = compile(scene, 4, 3).needs.with(Capability::Roulette);
     let both = |board| [(board, None), (board, Some(Level::Trace))];
     for (board, log) in Board::ALL.into_iter().flat_map(both) {
         let recipe = Recipe {
             profile: Arithmetic::Precise,
             needs,
-            roulette: true,
             log,
         };
         let mut command = firmware::cargo(toolchain, board, "clippy", &recipe)?;

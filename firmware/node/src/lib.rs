@@ -33,8 +33,11 @@ pub use leases::LEASES;
 pub use words::Words;
 pub use worker::{Outcome, Renderer, StackUse, Worker};
 
+use fixedmath::I16F16;
+use tracer::camera::{Camera, CameraRecord};
+use tracer::integrator::Integrator;
 use tracer::profile::Profile;
-use tracer::scene::{Needs, Scene};
+use tracer::scene::Scene;
 use tracer::unit::{Plan, Sums, Termination};
 use wire::{Boot, FaultInfo, FromCore, MAX_PAYLOAD, Message, Name, boot};
 
@@ -80,7 +83,7 @@ impl core::error::Error for SendError {}
 /// Runs the core that `boot` describes until it is told to stop.
 ///
 /// `board` is the name that HELLO gives. `stack` measures the stack when the work is over.
-pub fn run<P: Profile, N: Needs>(
+pub fn run<P: Profile, I: Integrator<P>>(
     boot: &Boot<'_>,
     board: Name,
     mut network: impl Network,
@@ -90,10 +93,12 @@ pub fn run<P: Profile, N: Needs>(
     if boot.profile != Name::new(P::NAME) {
         return Err(Fault::Profile);
     }
-    let mut scene = Scene::<P::Numbers>::empty();
-    scene.load::<N>(boot.scene).map_err(Fault::from)?;
+    let record = CameraRecord::of_bytes(boot.camera).ok_or(Fault::Scene)?;
+    let scene = Scene::view(boot.scene, I::CAPABILITIES)?.seen_from(record, I::CAPABILITIES)?;
     let plan = plan(boot);
-    let mut renderer = |unit, sums: &mut Sums| tracer::unit::render::<P, N>(&scene, &plan, unit, sums);
+    let (camera, integrator) = (Camera::new(record), I::new(&plan));
+    let mut renderer =
+        |unit, sums: &mut Sums| tracer::unit::render::<P>(&integrator, &scene, &camera, &plan, unit, sums);
     Worker::new(boot, plan, board, &mut renderer, &mut network, &mut clock)?.run(stack)
 }
 
@@ -131,6 +136,6 @@ pub fn plan(boot: &Boot<'_>) -> Plan {
             boot::Termination::Roulette => Termination::Roulette,
             boot::Termination::Depth(depth) => Termination::Depth(depth.get()),
         },
-        epsilon: boot.epsilon,
+        epsilon: I16F16::from_bits(boot.epsilon),
     }
 }

@@ -1,6 +1,6 @@
 //! The loop.
 
-use tracer::unit::{Plan, Sums};
+use tracer::unit::{Plan, SPAN, Sums};
 use wire::{
     Boot, Command, Farewell, FromCore, Hello, MAX_PAYLOAD, Message, Name, PixelSums, Pixels, ToCore, VERSION,
 };
@@ -91,7 +91,7 @@ impl<'a> Worker<'a> {
         clock: &'a mut dyn Clock,
     ) -> Result<Self, Fault> {
         let units = plan.units().ok_or(Fault::Units)?;
-        let source = UnitSource::new(boot, plan.runs(), units);
+        let source = UnitSource::new(boot, plan.spans(), units);
         let (scene, leases) = (boot.scene_id(), Leases::default());
         let (done, rejected, stopped) = (0, 0, false);
         Ok(Self {
@@ -159,6 +159,7 @@ impl<'a> Worker<'a> {
             rays
         );
         let extent = self.plan.extent(unit);
+        let sums: &[[u64; 3]; SPAN] = bytemuck::must_cast_ref(&sums);
         let sums =
             PixelSums::new(&sums[..usize::from(extent.pixels).min(sums.len())]).map_err(Fault::Sums)?;
         self.send(Message::Pixels(Pixels {

@@ -1,6 +1,9 @@
 //! Jobs that a core refuses before it says a word, and the last words it has for that.
 
+use bytemuck::Zeroable;
 use node::{Clock, Fault, Network, SendError, StackUse};
+use tracer::camera::CameraRecord;
+use tracer::integrator::Path;
 use tracer::profile::Precise;
 use tracer::scene::All;
 use wire::boot::{PixelOrder, Termination};
@@ -62,8 +65,13 @@ fn job() -> Boot<'static> {
 
 fn refused(boot: &Boot<'_>) -> Fault {
     let mut mailbox = Mailbox::default();
-    let outcome =
-        node::run::<Precise, All>(boot, Name::new("fake"), &mut mailbox, Stopped, StackUse::default);
+    let outcome = node::run::<Precise, Path<Precise, All>>(
+        boot,
+        Name::new("fake"),
+        &mut mailbox,
+        Stopped,
+        StackUse::default,
+    );
     assert!(mailbox.sent.is_empty(), "a core that cannot work asks for none");
     outcome.unwrap_err()
 }
@@ -76,8 +84,14 @@ fn a_job_for_another_profile() {
 
 #[test]
 fn a_scene_that_is_none() {
-    assert_eq!(refused(&job()), Fault::Scene);
-    assert_eq!(refused(&Boot { scene: &[], ..job() }), Fault::Scene);
+    assert_eq!(refused(&job()), Fault::Scene, "it has no camera either");
+    let camera = CameraRecord::zeroed();
+    let seen = Boot {
+        camera: bytemuck::bytes_of(&camera),
+        ..job()
+    };
+    assert_eq!(refused(&seen), Fault::Scene);
+    assert_eq!(refused(&Boot { scene: &[], ..seen }), Fault::Scene);
 }
 
 #[test]

@@ -2,8 +2,8 @@
 
 use fixedmath::random::{Lcg32, Lcg64};
 use fixedmath::{I2F30, I16F16, angle, division, exponential, product, root, unit, warp};
-use tracer::material::{Basis, Diffuse};
-use tracer::numbers::{Numbers, Published};
+use tracer::arithmetic::{Directions, Published, Sampling};
+use tracer::material::{HemisphereSampling, MalleyDisc};
 use tracer::random::Random;
 
 use crate::number::{Direction, Exponent, Fraction, Turn};
@@ -171,18 +171,18 @@ fn exponentials(visitor: &mut impl Visitor) {
 /// Points drawn from distributions.
 pub(crate) fn warps(visitor: &mut impl Visitor) {
     rows!(visitor, Tent:
-        Published "tracer::numbers::Published::tent" |Fraction(fraction)| Published::tent(fraction), I16F16;
+        Published "tracer::arithmetic::Published::tent" |Fraction(fraction)| Published::tent(fraction), I16F16;
         Ours "warp::tent" |Fraction(fraction)| warp::tent(fraction);
     );
     rows!(visitor, Sphere:
         Ours "warp::sphere" |(Fraction(height), Turn(turn))| warp::sphere(height, turn);
     );
     converted_rows!(visitor, DiffuseDirection:
-        Published "tracer::material::Basis" |(Direction(normal), square, turn)| {
+        Published "tracer::material::MalleyDisc" |(Direction(normal), square, turn)| {
             (normal.map(narrow), square, turn)
         } => ([I16F16; 3], Fraction, Turn),
         |(normal, Fraction(square), Turn(turn))| {
-            Basis::direction::<Published, _>(normal, &mut Drawn(turn, square))
+            MalleyDisc::direction::<Published, _>(normal, &mut Drawn(turn, square))
         } => [I16F16; 3], {
             const FUNCTION: Function = Function::LiftedDisc;
         };

@@ -22,7 +22,7 @@ pub mod registers;
 
 pub use fault::{die, exception, panicked};
 
-use image::{ImageNeeds, ImageProfile};
+use image::{ImageIntegrator, ImageProfile};
 use node::ethernet::{Ethernet, Frames};
 use node::{Clock, Words};
 #[cfg(feature = "log")]
@@ -104,7 +104,7 @@ pub fn run<B: Board>() -> ! {
     #[cfg(feature = "log")]
     defmt::info!("{=str} with profile {=str}", B::NAME, ImageProfile::NAME);
     let name = const { Name::new(B::NAME) };
-    match node::run::<ImageProfile, ImageNeeds>(&boot, name, network, B::clock(), memory::stack_use) {
+    match node::run::<ImageProfile, ImageIntegrator>(&boot, name, network, B::clock(), memory::stack_use) {
         Ok(outcome) if outcome.stack.used >= outcome.stack.size => die::<B>(
             &Words::of("the stack ran over: enlarge it in memory.x"),
             Exit::Fault,

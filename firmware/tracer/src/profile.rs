@@ -1,24 +1,36 @@
 //! Arithmetic profiles: named, compile-time sets of choices.
 
-use crate::intersect::{Intersection, Power, Textbook};
-use crate::material::{Basis, Diffuse, Offset};
-use crate::numbers::{Mixed, Numbers, Published};
+use fixedmath::I16F16;
+
+use crate::arithmetic::{Mixed, Numbers, Published};
+use crate::material::{HemisphereSampling, MalleyDisc, TangentSphere};
 use crate::random::{FullState, LowBits, Random};
 
 /// A named set of arithmetic choices.
 pub trait Profile: Sized + 'static {
     /// The name used by `--profile` and in reports.
     const NAME: &'static str;
-    /// Self-intersection epsilon in 16:16, unless the job says otherwise.
-    const EPSILON: i32;
-    /// Number formats, and the roots and divisions on them.
+    /// Self-intersection epsilon, unless the job says otherwise.
+    const EPSILON: I16F16;
+    /// How a quadratic surface is intersected.
+    const QUADRATIC: Quadratic;
+    /// Number formats, and the operations on them.
     type Numbers: Numbers;
     /// Random numbers.
     type Random: Random;
-    /// How rays meet spheres, and where on them.
-    type Intersection: Intersection;
     /// How a diffuse surface picks a direction.
-    type Diffuse: Diffuse;
+    type Hemisphere: HemisphereSampling;
+}
+
+/// How the quadratic equation of a ray and a surface is solved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quadratic {
+    /// By the textbook's formula: both roots, the first that exceeds epsilon. The hit point is where the ray is then.
+    Textbook,
+    /// By the power of the ray's origin, which says without a root whether a hit can be nearer than the best so far. Of the
+    /// surface that a ray leaves, one root is the start itself, which is left out by identity and not by distance. The hit point
+    /// is put back on its surface.
+    Power,
 }
 
 /// The published system's choices: all 16:16 and epsilon 0.1.
@@ -32,18 +44,18 @@ pub enum Precise {}
 
 impl Profile for Paper {
     const NAME: &'static str = "paper";
-    const EPSILON: i32 = 6554;
+    const EPSILON: I16F16 = I16F16::from_bits(6554);
+    const QUADRATIC: Quadratic = Quadratic::Textbook;
     type Numbers = Published;
     type Random = LowBits;
-    type Intersection = Textbook;
-    type Diffuse = Basis;
+    type Hemisphere = MalleyDisc;
 }
 
 impl Profile for Precise {
     const NAME: &'static str = "precise";
-    const EPSILON: i32 = 16;
+    const EPSILON: I16F16 = I16F16::from_bits(16);
+    const QUADRATIC: Quadratic = Quadratic::Power;
     type Numbers = Mixed;
     type Random = FullState;
-    type Intersection = Power;
-    type Diffuse = Offset;
+    type Hemisphere = TangentSphere;
 }

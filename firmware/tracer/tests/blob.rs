@@ -1,156 +1,236 @@
-//! The blob: what is encoded is decoded, and nothing else is accepted.
+//! The scene's bytes: what is written is seen, and nothing else is accepted.
 
+#[allow(dead_code, reason = "other tests use the rest")]
 mod support;
 
+use fixedmath::{I2F30, U0F32};
 use proptest::prelude::*;
-use support::{GLASS, blob, sphere};
-use tracer::numbers::Mixed;
-use tracer::scene::{
-    All, BlobError, HEADER_BYTES, Header, MaterialRecord, Needs, SPHERE_BYTES, Scene, SphereRecord,
-};
+use support::{Blob, blob, blob_for, camera, sphere};
+use tracer::camera::CameraRecord;
+use tracer::geometry::sphere::SphereRecord;
+use tracer::geometry::{PrimitiveId, PrimitiveSet};
+use tracer::material::{Kind, MaterialId, MaterialRecord};
+use tracer::scene::{BlobError, Capabilities, Capability, Header, MAX_BYTES, MAX_PRIMITIVES, Scene};
 
-enum OnlyDiffuse {}
+/// What one diffuse ball needs.
+const DIFFUSE_BALL: Capabilities = Capabilities::of(&[Capability::Solid, Capability::Diffuse]);
 
-impl Needs for OnlyDiffuse {
-    const DIFFUSE: bool = true;
-    const MIRROR: bool = false;
-    const GLASS: bool = false;
-    const TWOSIDED: bool = false;
-    const ROULETTE: bool = true;
-}
+const HEADER: usize = size_of::<Header>();
+const SPHERE: usize = size_of::<SphereRecord>();
+const MATERIAL: usize = size_of::<MaterialRecord>();
 
-fn decode<F: Needs>(blob: &[u8]) -> Result<(usize, usize), BlobError> {
-    let scene = Scene::<Mixed>::decode::<F>(blob)?;
-    Ok((scene.hollow().len(), scene.solid().len()))
-}
-
-#[test]
-fn records_survive_the_round_trip() {
-    for material in [MaterialRecord::Diffuse, MaterialRecord::Mirror, GLASS] {
-        let record = sphere([1.5, -2.25, 1e4], 16.5, 0.75, material);
-        for two_sided in [false, true] {
-            let record = SphereRecord { two_sided, ..record };
-            assert_eq!(SphereRecord::decode(&record.encode()), Ok(record));
-        }
-    }
-    let blob = blob([1.0, 2.0, 3.0], &[], &[], 64);
-    let (header, rest) = Header::decode(&blob).unwrap();
-    assert_eq!(
-        (header.encode().as_slice(), rest),
-        (blob.as_slice(), [].as_slice())
-    );
+fn counts(blob: &Blob, image: Capabilities) -> Result<(usize, usize), BlobError> {
+    let primitives = Scene::view(blob.bytes(), image)?.aggregate.primitives;
+    Ok((primitives.hollow_spheres.len(), primitives.solid_spheres.len()))
 }
 
 #[test]
 fn a_sphere_is_these_bytes() {
-    let bytes = sphere([1.0, -1.0, 0.5], 2.0, 0.5, MaterialRecord::Mirror).encode();
-    let mut expected = [0xa5; SPHERE_BYTES];
-    let words: [u32; 21] = [
+    let blob = blob_for(
+        DIFFUSE_BALL,
+        &[],
+        &[sphere([1.0, -1.0, 0.5], 2.0, 0.5, Kind::Diffuse)],
+    );
+    let words: [u32; 26] = [
+        u32::from_le_bytes(*b"FXS2"),
+        // The second and the fifth capability.
+        0b1_0010,
+        // One material and no hollow sphere; one solid.
+        1,
+        1,
+        // 4 in 32:32, and the sphere.
+        0,
+        4,
         0x1_0000,
         0xffff_0000,
         0x8000,
         0x2_0000,
+        // 2^60 over a radius of exactly 2^29 is 2^31, which saturates.
+        i32::MAX as u32,
+        12,
+        // Diffuse, dark, of one half.
         0,
-        4,
-        1 << 30,
-        12 | 1 << 8,
-        0,
-        0,
-        0,
-        1 << 31,
-        1 << 31,
-        1 << 31,
-        u32::MAX,
-        u32::MAX,
-        u32::MAX,
         1 << 29,
         0,
         0,
         0,
+        1 << 31,
+        1 << 31,
+        1 << 31,
+        u32::MAX,
+        u32::MAX,
+        u32::MAX,
+        0,
+        0,
+        0,
     ];
-    // 2^60 over a radius of exactly 2^29 is 2^31, which saturates to the largest i32.
-    let words = words.map(|word| if word == 1 << 30 { i32::MAX as u32 } else { word });
-    expected
-        .chunks_exact_mut(4)
-        .zip(words)
-        .for_each(|(to, word)| to.copy_from_slice(&word.to_le_bytes()));
-    assert_eq!(bytes, expected);
+    assert_eq!(bytemuck::cast_slice::<u8, u32>(blob.bytes()), words);
+    assert_eq!(counts(&blob, Capabilities::ALL), Ok((0, 1)));
 }
 
 #[test]
-fn faulty_blobs_are_refused() {
-    let good = blob(
-        [0.0; 3],
-        &[],
-        &[sphere([0.0; 3], 1.0, 0.5, MaterialRecord::Mirror)],
-        8,
-    );
-    assert_eq!(decode::<All>(&good), Ok((0, 1)));
-    assert_eq!(decode::<OnlyDiffuse>(&good), Err(BlobError::NotInThisImage));
+fn faulty_scenes_are_refused() {
+    let good = blob_for(DIFFUSE_BALL, &[], &[sphere([0.0; 3], 1.0, 0.5, Kind::Diffuse)]);
+    let view = |bytes: &[u8]| Scene::view(bytes, Capabilities::ALL).map(|_| ());
+    assert_eq!(view(good.bytes()), Ok(()));
+    assert_eq!(view(&good.bytes()[..HEADER - 1]), Err(BlobError::Length));
     assert_eq!(
-        decode::<All>(&good[..HEADER_BYTES - 1]),
-        Err(BlobError::Truncated)
+        view(&good.bytes()[..good.bytes().len() - 1]),
+        Err(BlobError::Length)
     );
-    assert_eq!(decode::<All>(&good[..good.len() - 1]), Err(BlobError::BadCounts));
-    let mut bad = good.clone();
-    bad[0] ^= 1;
-    assert_eq!(decode::<All>(&bad), Err(BlobError::BadMagic));
-    let mut bad = good.clone();
-    bad[6] = 2;
-    assert_eq!(
-        decode::<All>(&bad),
-        Err(BlobError::BadCounts),
-        "more hollow spheres than spheres"
-    );
-    for (byte, value) in [(29, 3), (30, 2), (31, 1)] {
+    let longer = Blob([&good.0[..], &[0]].concat());
+    assert_eq!(view(longer.bytes()), Err(BlobError::Length));
+    let mut shifted = Blob(vec![0; good.0.len() + 1]);
+    let room = &mut shifted.bytes_mut()[4..][..good.bytes().len()];
+    room.copy_from_slice(good.bytes());
+    assert_eq!(view(room), Err(BlobError::Misaligned));
+    let spoiled = |byte: usize, value: u8| {
         let mut bad = good.clone();
-        bad[HEADER_BYTES + byte] = value;
-        assert_eq!(decode::<All>(&bad), Err(BlobError::BadMaterial));
-    }
+        bad.bytes_mut()[byte] = value;
+        view(bad.bytes())
+    };
+    let (ball, material) = (HEADER, HEADER + SPHERE);
+    assert_eq!(spoiled(0, b'f'), Err(BlobError::BadMagic));
+    assert_eq!(
+        spoiled(7, 0x80),
+        Err(BlobError::NotInThisImage),
+        "nobody knows this need"
+    );
+    assert_eq!(
+        spoiled(12, 2),
+        Err(BlobError::Length),
+        "more spheres than there are"
+    );
+    assert_eq!(
+        spoiled(13, 2),
+        Err(BlobError::BadHeader),
+        "more than there can be"
+    );
+    assert_eq!(spoiled(14, 1), Err(BlobError::BadHeader), "of a third kind");
+    assert_eq!(
+        spoiled(4, 0b1_0000),
+        Err(BlobError::BadShape),
+        "needs that leave out the ball"
+    );
+    assert_eq!(
+        spoiled(4, 0b10),
+        Err(BlobError::BadMaterial),
+        "needs that leave out its material"
+    );
+    assert_eq!(spoiled(ball + 28, 32), Err(BlobError::BadShape), "a shift");
+    assert_eq!(spoiled(ball + 29, 2), Err(BlobError::BadShape), "an inside");
+    assert_eq!(
+        spoiled(ball + 30, 1),
+        Err(BlobError::BadShape),
+        "a material that is not there"
+    );
+    assert_eq!(
+        spoiled(material, 3),
+        Err(BlobError::BadMaterial),
+        "an unknown BSDF"
+    );
 }
 
 #[test]
-fn a_solid_that_is_cut_open_needs_code_for_its_inside() {
-    let ball = SphereRecord {
-        two_sided: true,
-        ..sphere([0.0; 3], 1.0, 0.5, MaterialRecord::Diffuse)
+fn an_image_takes_no_more_than_it_can_do() {
+    let mirror = blob_for(
+        Capabilities::of(&[Capability::Solid, Capability::Mirror]),
+        &[],
+        &[sphere([0.0; 3], 1.0, 0.5, Kind::Mirror)],
+    );
+    assert_eq!(counts(&mirror, DIFFUSE_BALL), Err(BlobError::NotInThisImage));
+    assert_eq!(counts(&mirror, DIFFUSE_BALL.with(Capability::Mirror)), Ok((0, 1)));
+}
+
+#[test]
+fn a_camera_within_a_solid_needs_code_for_its_inside() {
+    let blob = blob_for(DIFFUSE_BALL, &[], &[sphere([0.0; 3], 1.0, 0.5, Kind::Diffuse)]);
+    let mut camera = camera(8);
+    let seen = |camera: &CameraRecord, image| {
+        Scene::view(blob.bytes(), image)
+            .unwrap()
+            .seen_from(camera, image)
+            .map(|_| ())
     };
-    let blob = blob([0.0; 3], &[], &[ball], 8);
-    assert_eq!(decode::<All>(&blob), Ok((0, 1)));
-    assert_eq!(decode::<OnlyDiffuse>(&blob), Err(BlobError::NotInThisImage));
+    assert_eq!(seen(&camera, DIFFUSE_BALL), Ok(()));
+    camera.opened.insert(PrimitiveId::new(0));
+    assert_eq!(seen(&camera, DIFFUSE_BALL), Err(BlobError::NotInThisImage));
+    assert_eq!(seen(&camera, DIFFUSE_BALL.with(Capability::TwoSided)), Ok(()));
 }
 
 #[test]
 fn a_black_wall_needs_no_diffuse_code() {
-    enum Nothing {}
-    impl Needs for Nothing {
-        const DIFFUSE: bool = false;
-        const MIRROR: bool = false;
-        const GLASS: bool = false;
-        const TWOSIDED: bool = false;
-        const ROULETTE: bool = false;
+    let needs = Capabilities::of(&[Capability::Hollow]);
+    let wall = |reflectance| blob_for(needs, &[sphere([0.0; 3], 9.0, reflectance, Kind::Diffuse)], &[]);
+    assert_eq!(counts(&wall(0.0), needs), Ok((1, 0)));
+    assert_eq!(counts(&wall(0.5), needs), Err(BlobError::BadMaterial));
+}
+
+#[test]
+fn as_many_spheres_as_there_may_be() {
+    let ball = sphere([0.0; 3], 1.0, 0.5, Kind::Diffuse);
+    let most = blob(&[], &vec![ball; MAX_PRIMITIVES]);
+    assert_eq!(most.bytes().len(), MAX_BYTES);
+    assert_eq!(counts(&most, Capabilities::ALL), Ok((0, MAX_PRIMITIVES)));
+    let more = blob(&[ball], &vec![ball; MAX_PRIMITIVES]);
+    assert_eq!(counts(&more, Capabilities::ALL), Err(BlobError::BadHeader));
+}
+
+#[test]
+fn capabilities_have_a_word_each() {
+    for (index, capability) in Capability::ALL.iter().enumerate() {
+        let alone = Capabilities::of(&[*capability]);
+        assert_eq!(alone.to_string(), capability.word());
+        assert_eq!(alone.iter().collect::<Vec<_>>(), [*capability]);
+        assert!(
+            Capability::ALL[..index]
+                .iter()
+                .all(|other| other.word() != capability.word())
+        );
+        assert!(Capabilities::ALL.covers(alone) && !Capabilities::NONE.covers(alone));
     }
-    let wall = |reflectance| {
-        blob(
-            [0.0; 3],
-            &[sphere([0.0; 3], 9.0, reflectance, MaterialRecord::Diffuse)],
-            &[],
-            8,
-        )
-    };
-    assert_eq!(decode::<Nothing>(&wall(0.0)), Ok((1, 0)));
-    assert_eq!(decode::<Nothing>(&wall(0.5)), Err(BlobError::NotInThisImage));
+}
+
+#[test]
+fn sets_of_primitives() {
+    let mut set = PrimitiveSet::EMPTY;
+    for index in [0, 31, 32, 255, 256, 100_000] {
+        let primitive = PrimitiveId::new(index);
+        assert!(!set.contains(primitive));
+        set.insert(primitive);
+        assert_eq!(set.contains(primitive), index < MAX_PRIMITIVES, "{index}");
+    }
+    assert!(!set.contains(PrimitiveId::new(1)) && !set.is_empty());
+}
+
+/// What the list says of each record is what its fields are.
+#[test]
+fn a_material_says_what_it_is() {
+    let mut record = sphere([0.0; 3], 1.0, 0.25, Kind::Mirror).material;
+    assert_eq!(record.kind(), Some(Kind::Mirror));
+    assert_eq!(record.capability(), Some(Capability::Mirror));
+    assert!(!record.absorbs_all() && !record.emits());
+    record.bsdf = 3;
+    assert_eq!((record.kind(), record.capability()), (None, None));
+    record.continuation = I2F30::ZERO;
+    assert!(record.absorbs_all());
+    assert_eq!(record.reflectance, [U0F32::from_num(0.25); 3]);
+    assert_eq!(MaterialId::new(9).index(), 9);
 }
 
 proptest! {
     #[test]
-    fn no_bytes_make_decoding_panic(mut bytes in prop::collection::vec(any::<u8>(), 0..600), spheres in 0u8..8, hollow in 0u8..8) {
-        if let Some(head) = bytes.get_mut(..8) {
-            head.copy_from_slice(&[b'F', b'X', b'S', b'1', spheres, 0, hollow, 0]);
-        }
-        let whole = HEADER_BYTES + usize::from(spheres) * SPHERE_BYTES;
-        let _ = decode::<All>(&bytes);
-        bytes.resize(whole, 0x5a);
-        let _ = decode::<All>(&bytes);
+    fn no_bytes_make_a_view_panic(
+        mut words in prop::collection::vec(any::<u64>(), 2..90),
+        materials in 0u16..6,
+        hollow in 0u16..6,
+        solid in 0u16..6,
+    ) {
+        let header = Header::new(Capabilities::ALL, materials, [hollow, solid]);
+        bytemuck::cast_slice_mut(&mut words)[..HEADER].copy_from_slice(bytemuck::bytes_of(&header));
+        let whole = HEADER + usize::from(hollow + solid) * SPHERE + usize::from(materials) * MATERIAL;
+        let _ = counts(&Blob(words.clone()), Capabilities::ALL);
+        words.resize(whole / 8, 0x0001_0000_0000_0000);
+        let _ = counts(&Blob(words), Capabilities::ALL);
     }
 }

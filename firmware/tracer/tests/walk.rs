@@ -2,16 +2,20 @@
 
 mod support;
 
-use fixedmath::{I2F30, I16F16};
-use support::{GLASS, blob, sphere};
-use tracer::intersect::{Intersection, Power, Textbook};
-use tracer::material::{Basis, Bsdf, Diffuse, Offset, mirrored};
-use tracer::numbers::{Mixed, Numbers, Published};
-use tracer::profile::{Paper, Precise, Profile};
+use fixedmath::{I2F30, I16F16, U16F16, U48F16};
+use support::{Blob, GLASS, Sphere, blob, camera, sphere};
+use tracer::aggregate::Aggregate;
+use tracer::arithmetic::{Directions, Formats, Mixed, Published, Sampling};
+use tracer::camera::Camera;
+use tracer::geometry::sphere::SphereRecord;
+use tracer::geometry::vector::reflected;
+use tracer::geometry::{Departure, Interaction, PrimitiveId, Ray};
+use tracer::integrator::{Integrator, Path};
+use tracer::material::{DielectricNumbers, HemisphereSampling, Kind, MalleyDisc, TangentSphere};
+use tracer::profile::{Paper, Precise, Profile, Quadratic};
 use tracer::random::{FullState, LowBits, Random};
-use tracer::ray::Ray;
-use tracer::scene::{All, MaterialRecord, Scene};
-use tracer::unit::{Plan, RUN, Sums, Termination, render};
+use tracer::scene::{All, Scene};
+use tracer::unit::{Plan, SPAN, Sums, Termination, render};
 
 fn plan(width: u16, height: u16, spp: u32) -> Plan {
     Plan {
@@ -30,7 +34,9 @@ fn length(v: [f64; 3]) -> f64 {
 }
 
 /// Bins of equal probability in cosine squared and in angle, chi-squared against the uniform count.
-fn warp_is_cosine_weighted<N: Numbers<Unit: Into<f64>>, D: Diffuse>(random: &mut impl Random) -> f64 {
+fn warp_is_cosine_weighted<N: Sampling<Unit: Into<f64>>, D: HemisphereSampling>(
+    random: &mut impl Random,
+) -> f64 {
     const BINS: usize = 16;
     const DRAWS: u32 = 400_000;
     let n = [0.36, 0.48, 0.8];
@@ -57,80 +63,112 @@ fn warp_is_cosine_weighted<N: Numbers<Unit: Into<f64>>, D: Diffuse>(random: &mut
 #[test]
 fn our_warp_draws_the_cosine_distribution() {
     // 255 degrees of freedom: 350 is exceeded once in 10,000 runs, and the seed is fixed.
-    let found = warp_is_cosine_weighted::<Mixed, Offset>(&mut FullState::for_unit(1, 0));
+    let found = warp_is_cosine_weighted::<Mixed, TangentSphere>(&mut FullState::for_unit(1, 0));
     assert!(found < 350.0, "{found}");
-    let found = warp_is_cosine_weighted::<Mixed, Basis>(&mut FullState::for_unit(2, 0));
+    let found = warp_is_cosine_weighted::<Mixed, MalleyDisc>(&mut FullState::for_unit(2, 0));
     assert!(found < 350.0, "{found}");
 }
 
 #[test]
 fn the_published_parabola_is_seen_by_the_same_test() {
     // Not a virtue but a fact, and proof that the test above can fail.
-    let found = warp_is_cosine_weighted::<Published, Basis>(&mut FullState::for_unit(3, 0));
+    let found = warp_is_cosine_weighted::<Published, MalleyDisc>(&mut FullState::for_unit(3, 0));
     assert!(found > 1000.0, "{found}");
     // The low bits go round in 65,536 draws and fill every bin alike: too even to be random, four deviations below the
     // mean of 255.
-    let found = warp_is_cosine_weighted::<Mixed, Offset>(&mut LowBits::for_unit(3, 0));
+    let found = warp_is_cosine_weighted::<Mixed, TangentSphere>(&mut LowBits::for_unit(3, 0));
     assert!(found < 255.0 - 4.0 * 22.6, "{found}");
 }
+
+/// The primitives of a scene of spheres: hollow ones first.
+fn records(scene: &Scene<'_>) -> Vec<SphereRecord> {
+    let primitives = scene.aggregate.primitives;
+    let hollow = primitives.hollow_spheres.iter().map(|sphere| sphere.0);
+    hollow
+        .chain(primitives.solid_spheres.iter().map(|sphere| sphere.0))
+        .collect()
+}
+
+/// The nearest surface, as `P` finds it.
+fn nearest<P: Profile>(scene: &Scene<'_>, ray: &Ray<P::Numbers>) -> Option<Interaction<P::Numbers>> {
+    let epsilon = P::Numbers::length(Precise::EPSILON);
+    let hit = scene.aggregate.closest::<P, All>(ray, epsilon)?;
+    assert!(scene.aggregate.any::<P, All>(ray, epsilon, P::Numbers::FAR));
+    assert!(!scene.aggregate.any::<P, All>(ray, epsilon, epsilon));
+    scene.aggregate.interaction::<P, All>(ray, hit)
+}
+
+/// The ray that goes on from a surface.
+fn from(surface: &Interaction<Mixed>, direction: [I2F30; 3]) -> Ray<Mixed> {
+    Ray {
+        origin: surface.point,
+        direction,
+        departure: Some(Departure {
+            primitive: surface.primitive,
+            normal: surface.normal,
+        }),
+    }
+}
+
+const Z: [I2F30; 3] = [I2F30::ZERO, I2F30::ZERO, I2F30::ONE];
 
 #[test]
 fn a_ray_never_meets_at_once_the_surface_it_leaves() {
     let solid = [
-        sphere([0.0, 0.0, 30.0], 7.0, 0.7, MaterialRecord::Diffuse),
-        sphere([3.0, -11.0, 20.0], 0.02, 0.7, MaterialRecord::Diffuse),
-        sphere([-9.0, 4.0, 25.0], 3.0, 0.9, GLASS),
+        sphere([0.0, 0.0, 30.0], 7.0, 0.7, Kind::Diffuse),
+        sphere([3.0, -11.0, 20.0], 0.02, 0.7, Kind::Diffuse),
+        sphere([-9.0, 4.0, 25.0], 3.0, 0.9, Kind::Dielectric),
     ];
     let hollow = [
-        sphere([0.0, 0.0, -9900.0], 10_000.0, 0.7, MaterialRecord::Diffuse),
-        sphere([0.0, 0.0, 0.0], 200.0, 0.7, MaterialRecord::Diffuse),
+        sphere([0.0, 0.0, -9900.0], 10_000.0, 0.7, Kind::Diffuse),
+        sphere([0.0, 0.0, 0.0], 200.0, 0.7, Kind::Diffuse),
     ];
-    let scene = Scene::<Mixed>::decode::<All>(&blob([0.0; 3], &hollow, &solid, 8)).unwrap();
-    let epsilon = I16F16::from_bits(Precise::EPSILON);
+    let bytes = blob(&hollow, &solid);
+    let scene = bytes.view();
+    let records = records(&scene);
+    let bounds = scene.aggregate.bounds().unwrap();
     let mut random = FullState::for_unit(9, 9);
     let (mut hits, mut tiny) = (0u32, 0u32);
     for start in 0..200_000 {
         // Aim at a sphere, bounce off it four times.
-        let target = [solid[start % 3].centre, hollow[start % 2].centre][usize::from(start % 5 == 0)];
-        let aim = target.map(|c| I2F30::from_num(f64::from(c) / 65536.0 / 12_000.0));
-        let jitter = Offset::direction::<Mixed, _>([I2F30::ZERO, I2F30::ZERO, I2F30::ONE], &mut random);
-        let direction = Mixed::bisector(Mixed::normalised(aim, jitter), jitter, jitter);
-        let mut ray = Ray {
+        let target = [solid[start % 3], hollow[start % 2]][usize::from(start % 5 == 0)]
+            .record
+            .centre;
+        let aim = target.map(|c| I2F30::from_num(c.to_num::<f64>() / 12_000.0));
+        let jitter = TangentSphere::direction::<Mixed, _>(Z, &mut random);
+        let mut ray = Ray::<Mixed> {
             origin: [I16F16::ZERO; 3],
-            direction,
-            leaves: None,
-            outward: [I2F30::ZERO; 3],
+            direction: Mixed::bisector(Mixed::normalised(aim, jitter), jitter, jitter),
+            departure: None,
         };
         for _ in 0..4 {
-            let Some(hit) = Power::nearest::<_, All>(&scene, &ray, epsilon) else {
+            let Some(surface) = nearest::<Precise>(&scene, &ray) else {
                 panic!("the room is closed")
             };
-            let travelled = length([0, 1, 2].map(|i| (hit.point[i] - ray.origin[i]).to_num()));
-            if ray.leaves.is_some_and(|left| std::ptr::eq(left, hit.sphere)) {
+            let index = surface.primitive.index();
+            let sphere = records[index];
+            assert_eq!(
+                usize::from(surface.from_inside),
+                usize::from(index < hollow.len())
+            );
+            assert!(bounds.contains(surface.point));
+            let travelled = length([0, 1, 2].map(|i| (surface.point[i] - ray.origin[i]).to_num()));
+            if ray.departs_from(surface.primitive) {
                 assert!(
-                    hit.sphere.hollow || hit.sphere.surface.transmits(),
+                    index < hollow.len() || sphere.has_inside == 1,
                     "a solid ball met twice"
                 );
                 hits += 1;
                 tiny += u32::from(travelled < 1e-3);
             }
-            let from_centre = [0, 1, 2].map(|i| (hit.point[i] - hit.sphere.centre[i]).to_num::<f64>());
-            let radius = hit.sphere.radius.to_num::<f64>();
+            let from_centre = [0, 1, 2].map(|i| (surface.point[i] - sphere.centre[i]).to_num::<f64>());
+            let radius = sphere.radius.to_num::<f64>();
             assert!(
                 (length(from_centre) - radius).abs() < 3.0 / 65536.0,
                 "the hit is put back on its sphere"
             );
-            let facing = if hit.sphere.hollow {
-                hit.outward.map(|c| -c)
-            } else {
-                hit.outward
-            };
-            ray = Ray {
-                origin: hit.point,
-                direction: Offset::direction::<Mixed, _>(facing, &mut random),
-                leaves: Some(hit.sphere),
-                outward: hit.outward,
-            };
+            let direction = TangentSphere::direction::<Mixed, _>(surface.facing(), &mut random);
+            ray = from(&surface, direction);
         }
     }
     assert!(
@@ -146,58 +184,49 @@ fn a_ray_never_meets_at_once_the_surface_it_leaves() {
 fn light_within_a_glass_ball_keeps_its_angle() {
     let mut random = FullState::for_unit(6, 6);
     for radius in [1.0 / 256.0, 0.01, 0.1, 1.0, 16.5, 1000.0, 10_000.0] {
-        let wall = sphere([0.0; 3], 10_900.0, 0.7, MaterialRecord::Diffuse);
-        let ball = sphere([0.0; 3], radius, 0.9, GLASS);
-        let scene = Scene::<Mixed>::decode::<All>(&blob([0.0; 3], &[wall], &[ball], 8)).unwrap();
-        let Bsdf::Glass(glass) = &scene.solid()[0].surface.bsdf else {
-            panic!("the ball is glass")
-        };
+        let wall = sphere([0.0; 3], 10_900.0, 0.7, Kind::Diffuse);
+        let bytes = blob(&[wall], &[sphere([0.0; 3], radius, 0.9, Kind::Dielectric)]);
+        let (scene, ball) = (bytes.view(), PrimitiveId::new(1));
         let mut entered = 0;
         for ray in 0..2000 {
-            let outward = Offset::direction::<Mixed, _>([I2F30::ZERO, I2F30::ZERO, I2F30::ONE], &mut random);
+            let normal = TangentSphere::direction::<Mixed, _>(Z, &mut random);
             // Ever flatter: the sine of the angle with the surface goes down to 2^-16.
             let steep = I2F30::from_bits(1 << (29 - ray % 16));
-            let aside = Offset::direction::<Mixed, _>(outward, &mut random);
-            let height = Mixed::cosine(aside, outward);
-            let along = [0, 1, 2].map(|i| aside[i] - Mixed::times(outward[i], height));
-            let along = Mixed::normalised(along, outward);
-            let from = Mixed::normalised(
-                [0, 1, 2].map(|i| along[i] - Mixed::times(outward[i], steep)),
-                outward,
-            );
-            let mut ray = Ray {
-                origin: [0, 1, 2].map(|i| Mixed::scale(I16F16::from_num(radius), outward[i])),
-                direction: glass.direction(from, outward, &mut random),
-                leaves: Some(&scene.solid()[0]),
-                outward,
+            let aside = TangentSphere::direction::<Mixed, _>(normal, &mut random);
+            let height = Mixed::cosine(aside, normal);
+            let along = [0, 1, 2].map(|i| aside[i] - Mixed::times(normal[i], height));
+            let along = Mixed::normalised(along, normal);
+            let inwards = [0, 1, 2].map(|i| along[i] - Mixed::times(normal[i], steep));
+            let inwards = Mixed::normalised(inwards, normal);
+            let mut ray = Ray::<Mixed> {
+                origin: [0, 1, 2].map(|i| Mixed::scale(I16F16::from_num(radius), normal[i])),
+                direction: GLASS.direction::<Mixed, _>(inwards, normal, &mut random),
+                departure: Some(Departure {
+                    primitive: ball,
+                    normal,
+                }),
             };
-            let first = Mixed::cosine(ray.direction, ray.outward).to_num::<f64>();
+            let first = Mixed::cosine(ray.direction, normal).to_num::<f64>();
             if first > 0.0 {
                 continue;
             }
             entered += 1;
             for _ in 0..100 {
-                let hit = Power::nearest::<_, All>(&scene, &ray, I16F16::from_bits(16)).unwrap();
-                assert!(
-                    std::ptr::eq(hit.sphere, &scene.solid()[0]),
-                    "the ball of {radius} was left"
-                );
-                let cosine = Mixed::cosine(ray.direction, hit.outward);
+                let surface = nearest::<Precise>(&scene, &ray).unwrap();
+                assert_eq!(surface.primitive, ball, "the ball of {radius} was left");
+                let cosine = Mixed::cosine(ray.direction, surface.normal);
                 // 2^-29 a bounce.
                 let apart = cosine.to_num::<f64>() + first;
                 assert!(apart.abs() < 100.0 * 2f64.powi(-29), "{radius}: {apart}");
-                let square = Mixed::refracted_square(cosine, glass.leaving_squared);
+                let ratio = Mixed::ratio_squared(Mixed::ratio(GLASS.leaving));
+                let square = Mixed::refracted_square(cosine, ratio).to_bits();
                 // The index squared times twice the cosine is at most 4.5, times 100 bounces: 225 units of 2^-28.
                 assert!(
                     square > -(1 << 8),
                     "{radius}: past the critical angle by {square}"
                 );
-                ray = Ray {
-                    origin: hit.point,
-                    direction: mirrored::<Mixed>(ray.direction, hit.outward.map(|c| -c)),
-                    leaves: Some(hit.sphere),
-                    outward: hit.outward,
-                };
+                let back = reflected::<Mixed>(ray.direction, surface.normal.map(|c| -c));
+                ray = from(&surface, back);
             }
         }
         assert!(
@@ -207,31 +236,42 @@ fn light_within_a_glass_ball_keeps_its_angle() {
     }
 }
 
+/// `precise`, but by the textbook's formula.
+#[derive(Debug)]
+enum TextbookPrecise {}
+
+impl Profile for TextbookPrecise {
+    const NAME: &'static str = "textbook";
+    const EPSILON: I16F16 = Precise::EPSILON;
+    const QUADRATIC: Quadratic = Quadratic::Textbook;
+    type Numbers = Mixed;
+    type Random = FullState;
+    type Hemisphere = TangentSphere;
+}
+
 #[test]
 fn both_formulas_find_the_same_hits() {
     let solid = [
-        sphere([0.0, 0.0, 30.0], 7.0, 0.7, MaterialRecord::Diffuse),
-        sphere([-9.0, 4.0, 25.0], 3.0, 0.9, GLASS),
+        sphere([0.0, 0.0, 30.0], 7.0, 0.7, Kind::Diffuse),
+        sphere([-9.0, 4.0, 25.0], 3.0, 0.9, Kind::Dielectric),
     ];
     let hollow = [
-        sphere([0.0, 0.0, -900.0], 1000.0, 0.7, MaterialRecord::Diffuse),
-        sphere([0.0, 0.0, 0.0], 200.0, 0.7, MaterialRecord::Diffuse),
+        sphere([0.0, 0.0, -900.0], 1000.0, 0.7, Kind::Diffuse),
+        sphere([0.0, 0.0, 0.0], 200.0, 0.7, Kind::Diffuse),
     ];
-    let scene = Scene::<Mixed>::decode::<All>(&blob([0.0; 3], &hollow, &solid, 8)).unwrap();
+    let bytes = blob(&hollow, &solid);
+    let scene = bytes.view();
     let mut random = FullState::for_unit(4, 4);
     let mut other = 0;
     for _ in 0..200_000 {
-        let axis = [I2F30::ZERO, I2F30::ZERO, I2F30::ONE];
-        let direction = Offset::direction::<Mixed, _>(axis, &mut random);
-        let ray = Ray {
+        let ray = Ray::<Mixed> {
             origin: [I16F16::ZERO; 3],
-            direction,
-            leaves: None,
-            outward: [I2F30::ZERO; 3],
+            direction: TangentSphere::direction::<Mixed, _>(Z, &mut random),
+            departure: None,
         };
-        let ours = Power::nearest::<_, All>(&scene, &ray, I16F16::from_bits(16)).unwrap();
-        let theirs = Textbook::nearest::<_, All>(&scene, &ray, I16F16::from_bits(16)).unwrap();
-        if !std::ptr::eq(ours.sphere, theirs.sphere) {
+        let ours = nearest::<Precise>(&scene, &ray).unwrap();
+        let theirs = nearest::<TextbookPrecise>(&scene, &ray).unwrap();
+        if ours.primitive != theirs.primitive {
             other += 1;
             continue;
         }
@@ -244,18 +284,43 @@ fn both_formulas_find_the_same_hits() {
     assert!(other <= 5, "{other} rays along a silhouette may differ");
 }
 
-fn sums<P: Profile>(blob: &[u8], plan: &Plan, id: u32) -> (Sums, u32) {
-    let scene = Scene::<P::Numbers>::decode::<All>(blob).unwrap();
-    let mut sums = [[u64::MAX; 3]; RUN];
-    let rays = render::<P, All>(&scene, plan, id, &mut sums);
+#[test]
+fn nothing_has_no_surface_and_no_bounds() {
+    let bytes = blob(&[], &[]);
+    let scene = bytes.view();
+    let ray = Ray::<Mixed> {
+        origin: [I16F16::ZERO; 3],
+        direction: Z,
+        departure: None,
+    };
+    assert!(
+        scene
+            .aggregate
+            .closest::<Precise, All>(&ray, Precise::EPSILON)
+            .is_none()
+    );
+    assert!(
+        !scene
+            .aggregate
+            .any::<Precise, All>(&ray, Precise::EPSILON, Mixed::FAR)
+    );
+    assert_eq!(scene.aggregate.bounds(), None);
+}
+
+fn sums<P: Profile>(blob: &Blob, plan: &Plan, id: u32) -> (Sums, u32) {
+    let path = Path::<P, All>::new(plan);
+    let camera = Camera::new(&camera(plan.width));
+    let mut sums = [[U48F16::MAX; 3]; SPAN];
+    let rays = render(&path, &blob.view(), &camera, plan, id, &mut sums);
     (sums, rays)
 }
 
 /// A closed diffuse room that emits 1 and reflects 1/2: radiance 2 everywhere, exactly the sum of a geometric series.
-fn furnace() -> Vec<u8> {
-    let mut wall = sphere([1.0, 2.0, 3.0], 50.0, 0.5, MaterialRecord::Diffuse);
-    wall.emission = [1 << 16; 3];
-    blob([0.0; 3], &[wall], &[], 16)
+fn furnace() -> Blob {
+    let mut wall: Sphere = sphere([1.0, 2.0, 3.0], 50.0, 0.5, Kind::Diffuse);
+    wall.material.emission = [U16F16::ONE; 3];
+    wall.material.emits = 1;
+    blob(&[wall], &[])
 }
 
 fn furnace_mean<P: Profile>(termination: Termination) -> f64 {
@@ -264,16 +329,13 @@ fn furnace_mean<P: Profile>(termination: Termination) -> f64 {
         epsilon: P::EPSILON,
         ..plan(16, 16, 512)
     };
-    let total: u64 = (0..plan.units().unwrap())
-        .map(|id| {
-            sums::<P>(&furnace(), &plan, id)
-                .0
-                .as_flattened()
-                .iter()
-                .sum::<u64>()
-        })
+    let furnace = furnace();
+    let total: f64 = (0..plan.units().unwrap())
+        .flat_map(|id| sums::<P>(&furnace, &plan, id).0)
+        .flatten()
+        .map(|sum| sum.to_num::<f64>())
         .sum();
-    total as f64 / 65536.0 / (16.0 * 16.0 * 512.0 * 3.0)
+    total / (16.0 * 16.0 * 512.0 * 3.0)
 }
 
 #[test]
@@ -317,7 +379,7 @@ fn units_cover_every_sample_once() {
         let mut samples = vec![0; usize::from(width) * usize::from(height)];
         for id in 0..plan.units().unwrap() {
             let extent = plan.extent(id);
-            assert!((1..=RUN as u8).contains(&extent.pixels) && extent.samples.is_multiple_of(4));
+            assert!((1..=SPAN as u8).contains(&extent.pixels) && extent.samples.is_multiple_of(4));
             for pixel in 0..usize::from(extent.pixels) {
                 samples[extent.first_pixel as usize + pixel] += u32::from(extent.samples);
             }

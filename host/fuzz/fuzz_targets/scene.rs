@@ -3,12 +3,11 @@
 
 use host::scene::{Scene, compile};
 use libfuzzer_sys::fuzz_target;
-use tracer::numbers::Mixed;
-use tracer::scene::{All, HEADER_BYTES, SPHERE_BYTES, SphereRecord};
+use tracer::geometry::sphere::SphereRecord;
 
 /// 1/r is right to 2^-28: the stored radius times the stored reciprocal is 2^60, less what its last bit is worth.
 fn check(record: &SphereRecord) {
-    let product = (i64::from(record.radius) << record.shift) * i64::from(record.reciprocal);
+    let product = (i64::from(record.radius.to_bits()) << record.shift) * i64::from(record.reciprocal.to_bits());
     assert!(((1 << 60) - product).abs() <= 1 << 32, "{record:?}");
 }
 
@@ -21,9 +20,8 @@ fuzz_target!(|text: &str| {
             continue;
         }
         let compiled = compile(&scene, width, height);
-        tracer::scene::Scene::<Mixed>::decode::<All>(&compiled.blob).expect("what was compiled decodes");
-        for bytes in compiled.blob[HEADER_BYTES..].chunks(SPHERE_BYTES) {
-            check(&SphereRecord::decode(bytes).expect("a record"));
-        }
+        let primitives = compiled.view().aggregate.primitives;
+        primitives.hollow_spheres.iter().for_each(|sphere| check(&sphere.0));
+        primitives.solid_spheres.iter().for_each(|sphere| check(&sphere.0));
     }
 });

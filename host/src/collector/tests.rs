@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use node::{Clock, Fault, Network, Outcome, SendError, StackUse, TICKS_PER_SECOND, Worker};
 use rand_xoshiro::Xoshiro256StarStar;
 use rand_xoshiro::rand_core::{Rng, SeedableRng};
-use tracer::unit::Sums;
+use tracer::unit::SPAN;
 use wire::boot::PixelOrder;
 use wire::{Boot, Name};
 
@@ -88,7 +88,7 @@ impl Clock for HostClock {
 }
 
 /// What the quick renderer makes of a unit.
-fn rendered(unit: u32) -> Sums {
+fn rendered(unit: u32) -> [[u64; 3]; SPAN] {
     std::array::from_fn(|pixel| [u64::from(unit) + 1, pixel as u64, u64::from(unit % 1000) << 20])
 }
 
@@ -146,9 +146,9 @@ fn work(
         sent: 0,
         given_up,
     };
-    let mut renderer = |unit: u32, sums: &mut Sums| {
+    let mut renderer = |unit: u32, sums: &mut tracer::unit::Sums| {
         thread::sleep(Duration::from_millis(2));
-        *sums = rendered(unit);
+        *sums = rendered(unit).map(|pixel| pixel.map(fixedmath::U48F16::from_bits));
         7
     };
     let mut clock = HostClock(Instant::now());

@@ -12,13 +12,13 @@ use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::Command;
+pub use tracer::scene::{Capabilities, Capability};
 
 use crate::arithmetic::Arithmetic;
 use crate::board::Board;
 use crate::file::write_whole;
 use crate::interrupt;
 use crate::log::Level;
-use crate::scene::SceneNeeds;
 use crate::setup::Toolchain;
 use crate::workspace::{self, NoWorkspace};
 
@@ -29,10 +29,8 @@ pub use elf::{ImageSize, board_of, entry, measure};
 pub struct Recipe {
     /// The arithmetic.
     pub profile: Arithmetic,
-    /// The materials of the scene.
-    pub needs: SceneNeeds,
-    /// Whether paths end by Russian roulette.
-    pub roulette: bool,
+    /// What its scene, camera and integrator need.
+    pub needs: Capabilities,
     /// What it logs; none for an image without a log, the one that is measured.
     pub log: Option<Level>,
 }
@@ -40,11 +38,7 @@ pub struct Recipe {
 impl Recipe {
     /// The words of `TRACER_NEEDS`.
     fn words(&self) -> String {
-        let mut words = self.needs.to_string();
-        if self.roulette {
-            words.push_str(if words.is_empty() { "roulette" } else { ",roulette" });
-        }
-        words
+        self.needs.to_string()
     }
 
     /// The recipe in words.
@@ -182,13 +176,7 @@ pub fn build_examples(
 ) -> Result<Vec<PathBuf>, FirmwareError> {
     let recipe = Recipe {
         profile: Arithmetic::Precise,
-        needs: SceneNeeds {
-            diffuse: true,
-            mirror: true,
-            glass: true,
-            two_sided: true,
-        },
-        roulette: true,
+        needs: Capabilities::ALL,
         log,
     };
     let mut command = cargo(toolchain, board, "build", &recipe)?;
@@ -301,16 +289,10 @@ mod tests {
 
     #[test]
     fn an_image_is_named_after_what_it_is_for() {
-        let needs = SceneNeeds {
-            diffuse: true,
-            mirror: false,
-            glass: true,
-            two_sided: false,
-        };
+        let needs = Capabilities::of(&[Capability::Diffuse, Capability::Glass, Capability::Roulette]);
         let recipe = Recipe {
             profile: Arithmetic::Paper,
             needs,
-            roulette: true,
             log: None,
         };
         assert_eq!(recipe.words(), "diffuse,glass,roulette");
@@ -325,20 +307,6 @@ mod tests {
         assert_eq!(
             logging.file_name(Board::Versatilepb),
             "versatilepb-paper-diffuse-glass-roulette-log-debug.elf"
-        );
-        let nothing = SceneNeeds {
-            diffuse: false,
-            mirror: false,
-            glass: false,
-            two_sided: false,
-        };
-        assert_eq!(
-            Recipe {
-                needs: nothing,
-                ..recipe
-            }
-            .words(),
-            "roulette"
         );
     }
 }

@@ -10,13 +10,15 @@ use std::time::{Duration, Instant};
 
 use node::{Clock, Fault, Network, Outcome, SendError, StackUse, TICKS_PER_SECOND};
 use rustix::process::{Resource, Rlimit, getrlimit, setpriority_process, setrlimit};
-use tracer::profile::{Paper, Precise};
+use tracer::integrator::Path;
+use tracer::profile::{Paper, Precise, Profile};
 use tracer::scene::All;
 use wire::{Boot, Command, MAX_PAYLOAD, Name, ToCore};
 
 use super::FleetError;
 use crate::arithmetic::Arithmetic;
 use crate::collector::rest;
+use crate::scene::Blob;
 
 /// How much cores stand back behind the thread that collects, which must empty its socket however many they are.
 const NICE: i32 = 10;
@@ -132,15 +134,20 @@ fn how(thread: JoinHandle<Result<Outcome, String>>) -> String {
 fn run(block: &[u8], profile: Arithmetic, end: Arc<End>) -> Result<Outcome, String> {
     // Of this thread alone. Where the system does not let it, the collector waits for its turn like any core.
     let _as_before = setpriority_process(None, NICE);
-    let boot = Boot::decode(block).map_err(|error| format!("its boot block: {error}"))?;
+    let block = Blob::new(block);
+    let boot = Boot::decode(block.bytes()).map_err(|error| format!("its boot block: {error}"))?;
     let network = Loopback::open(&boot, end).map_err(|error| format!("its socket: {error}"))?;
     let clock = HostClock(Instant::now());
-    let board = Name::new("native");
     let outcome: Result<Outcome, Fault> = match profile {
-        Arithmetic::Paper => node::run::<Paper, All>(&boot, board, network, clock, StackUse::default),
-        Arithmetic::Precise => node::run::<Precise, All>(&boot, board, network, clock, StackUse::default),
+        Arithmetic::Paper => work::<Paper>(&boot, network, clock),
+        Arithmetic::Precise => work::<Precise>(&boot, network, clock),
     };
     outcome.map_err(|fault| fault.to_string())
+}
+
+fn work<P: Profile>(boot: &Boot<'_>, network: Loopback, clock: HostClock) -> Result<Outcome, Fault> {
+    let board = const { Name::new("native") };
+    node::run::<P, Path<P, All>>(boot, board, network, clock, StackUse::default)
 }
 
 /// A core's way to the collector: a socket of this host.

@@ -229,7 +229,7 @@ mod tests {
     /// The longest unit that a packet can speak of may take 700 numbers a sample; in the Cornell box it takes 15.
     #[test]
     fn no_unit_reaches_the_next_stream() {
-        let most = 700 * tracer::unit::RUN as u64 * u64::from(wire::MAX_SAMPLES);
+        let most = 700 * tracer::unit::SPAN as u64 * u64::from(wire::MAX_SAMPLES);
         let found = streams();
         assert!(found.closest_steps > most, "{found:?}");
         assert!(found.closest_of_renders > most, "{found:?}");

@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
+use fixedmath::I16F16;
 use plotters::style::text_anchor::{HPos, VPos};
 use serde::Serialize;
-use tracer::profile::{Precise, Profile};
+use tracer::profile::{Precise, Profile, Quadratic};
 use tracer::random::LowBits;
 use tracer::unit::{Plan, Termination};
 
@@ -25,11 +26,11 @@ pub enum PreciseByLowBits {}
 
 impl Profile for PreciseByLowBits {
     const NAME: &'static str = "precise by low bits";
-    const EPSILON: i32 = Precise::EPSILON;
+    const EPSILON: I16F16 = Precise::EPSILON;
+    const QUADRATIC: Quadratic = Precise::QUADRATIC;
     type Numbers = <Precise as Profile>::Numbers;
     type Random = LowBits;
-    type Intersection = <Precise as Profile>::Intersection;
-    type Diffuse = <Precise as Profile>::Diffuse;
+    type Hemisphere = <Precise as Profile>::Hemisphere;
 }
 
 /// Errors of pixels so far apart or nearer, across and down, are looked at together.
@@ -94,12 +95,9 @@ impl Pictures {
             epsilon: Precise::EPSILON,
         };
         let compiled = compile(scene, width, height);
-        let whole = "the compiler in this very program wrote the blob";
         Self {
-            full_state: direct::estimate::<Precise>(&compiled, &plan).expect(whole).0,
-            low_bits: direct::estimate::<PreciseByLowBits>(&compiled, &plan)
-                .expect(whole)
-                .0,
+            full_state: direct::estimate::<Precise>(&compiled, &plan).0,
+            low_bits: direct::estimate::<PreciseByLowBits>(&compiled, &plan).0,
             reference,
         }
     }

@@ -15,6 +15,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
+use tracer::scene::Capability;
 use tracer::unit::{Plan, Termination};
 use wire::Name;
 
@@ -221,8 +222,8 @@ impl Job {
         Session {
             id: Session::fresh_id(),
             cores: self.options.cores,
-            camera: Vec::new(),
-            scene: self.compiled.blob.clone(),
+            camera: bytemuck::bytes_of(&self.compiled.camera).to_vec(),
+            scene: self.compiled.blob.bytes().to_vec(),
             scene_id: self.compiled.id,
             exponent: self.compiled.exponent,
             epoch: 0,
@@ -236,8 +237,10 @@ impl Job {
     pub fn recipe(&self) -> Recipe {
         Recipe {
             profile: self.options.profile,
-            needs: self.compiled.needs,
-            roulette: self.options.termination.0 == Termination::Roulette,
+            needs: match self.options.termination.0 {
+                Termination::Roulette => self.compiled.needs.with(Capability::Roulette),
+                Termination::Depth(_) => self.compiled.needs,
+            },
             log: None,
         }
     }

@@ -7,6 +7,7 @@ use std::str::FromStr;
 
 use clap::ValueEnum;
 use clap::builder::{OsStringValueParser, TypedValueParser as _};
+use fixedmath::I16F16;
 use tracer::unit::{Plan, Termination};
 use wire::boot::PixelOrder;
 
@@ -184,9 +185,9 @@ impl FromStr for Size {
     }
 }
 
-/// Self-intersection epsilon in 16:16.
+/// Self-intersection epsilon.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Epsilon(pub i32);
+pub struct Epsilon(pub I16F16);
 
 impl FromStr for Epsilon {
     type Err = String;
@@ -197,7 +198,7 @@ impl FromStr for Epsilon {
         if !(0.0..=100.0).contains(&value) {
             return Err("a distance from 0 to 100, in the scene's units".to_owned());
         }
-        Ok(Self((value * 65536.0).round() as i32))
+        Ok(Self(I16F16::from_bits((value * 65536.0).round() as i32)))
     }
 }
 
@@ -336,7 +337,10 @@ mod tests {
         .expect("these are all good");
         let plan = options.picture.plan(32);
         assert_eq!(options.boards, Board::ALL);
-        assert_eq!((plan.spp, plan.samples_per_unit, plan.epsilon), (1024, 32, 6554));
+        assert_eq!(
+            (plan.spp, plan.samples_per_unit, plan.epsilon),
+            (1024, 32, Arithmetic::Paper.epsilon())
+        );
         assert_eq!((plan.termination, plan.seed), (Termination::Depth(7), u64::MAX));
         assert_eq!(options.picture.reference, Some(Reference::None));
     }

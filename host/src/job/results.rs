@@ -114,7 +114,7 @@ impl Results<'_> {
             Arithmetic::Precise => lockstep::render::<Precise>(compiled, plan, done),
         };
         bar.finish_and_clear();
-        Some(rendered.expect("the compiler in this very program wrote the blob"))
+        Some(rendered)
     }
 
     /// The variance of the collected picture's pixels.
@@ -128,7 +128,7 @@ impl Results<'_> {
             Arithmetic::Precise => noise::variance::<Precise>(compiled, plan, &picture, oracle, done),
         };
         bar.finish_and_clear();
-        found.expect("the compiler in this very program wrote the blob")
+        found
     }
 
     /// Writes pictures and report into the folder for them. Elsewhere, they are kept but it is an error.
@@ -206,7 +206,7 @@ impl Results<'_> {
             termination: options.termination.to_string(),
             pixels: options.pixels.name().to_owned(),
             seed: plan.seed,
-            epsilon: f64::from(plan.epsilon) / 65536.0,
+            epsilon: plan.epsilon.into(),
             image_sha256: self.collection.film.sha256(),
             samples: self.collection.film.samples(),
             missing_pixels: self.collection.film.missing(),

@@ -1,11 +1,14 @@
-//! The scene compiler: from a description in double precision to the fixed-point blob that cores read.
+//! The scene compiler: from a description in double precision to the fixed-point records that cores read.
 //!
 //! Everything that does not change during a render is worked out here: `1/r`, `r^2`, the camera's basis in the scale that
-//! uses its format best, reflectance over survival. What the scene needs of the tracer comes out beside the blob.
+//! uses its format best, reflectance over continuation probability. What the scene needs of the tracer comes out beside it.
 
-use std::fmt;
-
-use tracer::scene::{CameraRecord, Header, MaterialRecord, SphereRecord};
+use fixedmath::{I1F31, I2F30, I4F28, I16F16, I32F32, U0F32, U16F16, U19F45};
+use tracer::camera::CameraRecord;
+use tracer::geometry::sphere::SphereRecord;
+use tracer::geometry::{PrimitiveId, PrimitiveSet};
+use tracer::material::{Bsdf, Dielectric, Kind, MaterialId, MaterialRecord};
+use tracer::scene::{Capabilities, Capability, Header};
 
 use super::light::Light;
 use super::start::StartPatch;
@@ -13,85 +16,90 @@ use super::validate::is_cut_open;
 use super::vector::{cross, normalised};
 use super::{Camera, Material, Scene, Sphere};
 
-/// A scene as cores get it.
+/// A scene as cores get it, and a view of it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CompiledScene {
-    /// The bytes.
-    pub blob: Vec<u8>,
+    /// The scene's bytes, the same wherever it is seen from.
+    pub blob: Blob,
     /// Their CRC-32, by which packets name the scene.
     pub id: u32,
-    /// What the image must be built with.
-    pub needs: SceneNeeds,
+    /// Where it is seen from, at which size of the picture.
+    pub camera: CameraRecord,
+    /// What the image must be built with for scene and camera.
+    pub needs: Capabilities,
     /// Cores' radiance is the scene's times 2^exponent; 0 for all scenes but those whose light would not fit as it is.
     pub exponent: i32,
 }
 
-/// What a scene needs of the tracer.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct SceneNeeds {
-    /// A diffuse surface that reflects at all.
-    pub diffuse: bool,
-    /// A mirror.
-    pub mirror: bool,
-    /// A dielectric.
-    pub glass: bool,
-    /// A solid that camera rays start in.
-    pub two_sided: bool,
-}
-
-impl fmt::Display for SceneNeeds {
-    /// The words that the firmware's build script reads, comma-separated.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let words = [
-            (self.diffuse, "diffuse"),
-            (self.mirror, "mirror"),
-            (self.glass, "glass"),
-            (self.two_sided, "twosided"),
-        ];
-        let needed: Vec<&str> = words
-            .into_iter()
-            .filter_map(|(needed, word)| needed.then_some(word))
-            .collect();
-        f.write_str(&needed.join(","))
+impl CompiledScene {
+    /// The scene as cores read it, seen from its camera.
+    ///
+    /// # Panics
+    /// Never for what [`compile`] made.
+    pub fn view(&self) -> tracer::scene::Scene<'_> {
+        tracer::scene::Scene::view(self.blob.bytes(), self.needs)
+            .and_then(|scene| scene.seen_from(&self.camera, self.needs))
+            .expect("compiler and tracer agree")
     }
 }
+
+/// Bytes that are aligned as cores need it, to 8.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Blob(Vec<u64>);
+
+impl Blob {
+    /// Copies them, with zeros to a multiple of 8.
+    pub fn new(bytes: &[u8]) -> Self {
+        let mut words = vec![0; bytes.len().div_ceil(8)];
+        bytemuck::cast_slice_mut(&mut words)[..bytes.len()].copy_from_slice(bytes);
+        Self(words)
+    }
+
+    /// The bytes.
+    pub fn bytes(&self) -> &[u8] {
+        bytemuck::cast_slice(&self.0)
+    }
+}
+
+const _: () = assert!(
+    wire::boot::encoded_len(size_of::<CameraRecord>(), tracer::scene::MAX_BYTES) <= wire::boot::MAX_LEN,
+    "a scene of as many spheres as there may be fits the boot block"
+);
 
 /// A sample lies up to this many pixels outside the film: a tent reaches a sub-pixel beyond the last one's centre.
 const FILTER: f64 = 0.25;
 
-/// Compiles a checked scene for a picture of `width` by `height` pixels.
+/// Compiles a checked scene, and its camera for a picture of `width` by `height` pixels.
 pub fn compile(scene: &Scene, width: u16, height: u16) -> CompiledScene {
     // Hollow spheres go first: most rays end on one, and a near hit early spares roots later.
     let (hollow, solid): (Vec<&Sphere>, Vec<&Sphere>) =
         scene.spheres.iter().partition(|sphere| sphere.hollow);
-    let header = Header {
-        spheres: scene.spheres.len() as u16,
-        hollow: hollow.len() as u16,
-        camera: camera(&scene.camera, width, height),
-    };
+    let counts = [hollow.len() as u16, solid.len() as u16];
+    let spheres = [hollow, solid].concat();
     let exponent = Light::of(scene.spheres.iter()).exponent();
-    let patch = StartPatch::new(&scene.camera, width, height, FILTER);
-    let mut blob = header.encode().to_vec();
-    let mut two_sided = false;
-    for sphere in hollow.into_iter().chain(solid) {
-        let record = SphereRecord {
-            two_sided: is_cut_open(sphere, &patch),
-            ..record(sphere, exponent)
-        };
-        two_sided |= record.two_sided;
-        blob.extend(record.encode());
-    }
-    let has = |wanted: fn(&Material) -> bool| scene.spheres.iter().any(|sphere| wanted(&sphere.material));
-    let needs = SceneNeeds {
-        diffuse: has(|material| matches!(material, Material::Diffuse(colour) if *colour != [0.0; 3])),
-        mirror: has(|material| matches!(material, Material::Mirror(_))),
-        glass: has(|material| matches!(material, Material::Glass { .. })),
-        two_sided,
+    let mut materials = Vec::new();
+    let records: Vec<SphereRecord> = spheres
+        .iter()
+        .map(|sphere| record(sphere, material_id(&mut materials, material(sphere, exponent))))
+        .collect();
+    let needs = needs(&spheres);
+    let header = Header::new(needs, materials.len() as u16, counts);
+    let blob = [
+        bytemuck::bytes_of(&header),
+        bytemuck::cast_slice(&records),
+        bytemuck::cast_slice(&materials),
+    ]
+    .concat();
+    let blob = Blob::new(&blob);
+    let camera = CameraRecord {
+        opened: opened(scene, &spheres, width, height),
+        ..camera(&scene.camera, width, height)
     };
     CompiledScene {
-        id: wire::crc32(&blob),
+        id: wire::crc32(blob.bytes()),
+        needs: needs.union(camera.needs()),
         blob,
-        needs,
+        camera,
         exponent,
     }
 }
@@ -103,19 +111,18 @@ fn camera(camera: &Camera, width: u16, height: u16) -> CameraRecord {
     let up = cross(right, camera.direction).map(|c| c * plane_height);
     let right = right.map(|c| c * plane_height * aspect);
     let scale = film_scale(camera.direction, right, up, width, height);
-    let q30 = |v: [f64; 3]| v.map(|c| (c * scale * f64::from(1 << 30)).round() as i32);
-    let axis = |pixels: u16| {
-        let subpixels = 2 * u32::from(pixels);
-        (subpixels, (1u64 << 45) / u64::from(subpixels))
-    };
+    let scaled = |v: [f64; 3]| v.map(|c| q30(c * scale));
+    let subpixels = [width, height].map(|pixels| 2 * u32::from(pixels));
     CameraRecord {
+        reciprocals: subpixels.map(|count| U19F45::from_bits((1 << 45) / u64::from(count))),
+        subpixels,
         position: camera.position.map(q16),
-        forward: q30(camera.direction),
-        right: q30(right),
-        up: q30(up),
         near: q16(camera.near),
-        columns: axis(width),
-        rows: axis(height),
+        forward: scaled(camera.direction),
+        right: scaled(right),
+        up: scaled(up),
+        reserved: 0,
+        opened: PrimitiveSet::EMPTY,
     }
 }
 
@@ -133,53 +140,107 @@ fn film_scale(forward: [f64; 3], right: [f64; 3], up: [f64; 3], width: u16, heig
     1.99 / largest
 }
 
-fn record(sphere: &Sphere, exponent: i32) -> SphereRecord {
+fn record(sphere: &Sphere, material: MaterialId) -> SphereRecord {
     let radius = q16(sphere.radius);
+    let bits = radius.to_bits();
     // The shift that leaves the radius 30 bits: a point of the sphere then has no more either. From 16,384 on it has 31.
-    let shift = radius.leading_zeros().saturating_sub(2);
-    let reciprocal = (1i64 << 60) / (i64::from(radius) << shift);
-    let (reflectance, material) = match sphere.material {
-        Material::Diffuse(colour) => (colour, MaterialRecord::Diffuse),
-        Material::Mirror(colour) => (colour, MaterialRecord::Mirror),
-        Material::Glass { tint, index } => (tint, glass(index)),
-    };
-    let survival = reflectance.iter().copied().fold(0.0, f64::max);
-    let survivor = reflectance.map(|c| if survival > 0.0 { c / survival } else { 0.0 });
+    let shift = bits.leading_zeros().saturating_sub(2);
+    let reciprocal = (1i64 << 60) / (i64::from(bits) << shift);
     SphereRecord {
+        square: I32F32::from_bits(i64::from(bits) * i64::from(bits)),
         centre: sphere.centre.map(q16),
         radius,
-        square: i64::from(radius) * i64::from(radius),
-        reciprocal: reciprocal.min(i32::MAX.into()) as i32,
+        reciprocal: I1F31::from_bits(reciprocal.min(i32::MAX.into()) as i32),
         shift: shift as u8,
-        two_sided: false,
-        emission: sphere
-            .emission
-            .map(|e| (e * 2f64.powi(exponent + 16)).round() as u32),
-        reflectance: reflectance.map(q0_32),
-        survivor: survivor.map(q0_32),
-        survival: (survival * f64::from(1 << 30)).round() as i32,
+        has_inside: matches!(sphere.material, Material::Glass { .. }).into(),
         material,
     }
 }
 
-fn glass(index: f64) -> MaterialRecord {
-    let q28 = |value: f64| (value * f64::from(1 << 28)).round() as i32;
-    let normal = ((index - 1.0) / (index + 1.0)).powi(2);
-    MaterialRecord::Glass {
-        index: q28(index),
-        inverse: q28(1.0 / index),
-        normal_reflectance: (normal * f64::from(1 << 30)).round() as i32,
+fn material(sphere: &Sphere, exponent: i32) -> MaterialRecord {
+    let (reflectance, bsdf, parameters) = match sphere.material {
+        Material::Diffuse(colour) => (colour, Kind::Diffuse, [0; 3]),
+        Material::Mirror(colour) => (colour, Kind::Mirror, [0; 3]),
+        Material::Glass { tint, index } => (tint, Kind::Dielectric, bytemuck::must_cast(dielectric(index))),
+    };
+    let continuation = reflectance.iter().copied().fold(0.0, f64::max);
+    let continued = reflectance.map(|c| if continuation > 0.0 { c / continuation } else { 0.0 });
+    let emission = sphere
+        .emission
+        .map(|e| U16F16::from_bits((e * 2f64.powi(exponent + 16)).round() as u32));
+    MaterialRecord {
+        bsdf: bsdf as u8,
+        emits: emission.iter().any(|channel| *channel != U16F16::ZERO).into(),
+        reserved: 0,
+        continuation: q30(continuation),
+        emission,
+        reflectance: reflectance.map(q0_32),
+        continued: continued.map(q0_32),
+        parameters,
     }
 }
 
+/// The id of `material` in the table, where it is put if it is new.
+fn material_id(table: &mut Vec<MaterialRecord>, material: MaterialRecord) -> MaterialId {
+    let known = table.iter().position(|known| *known == material);
+    let index = known.unwrap_or_else(|| {
+        table.push(material);
+        table.len() - 1
+    });
+    MaterialId::new(index as u16)
+}
+
+fn dielectric(index: f64) -> Dielectric {
+    let q28 = |value: f64| I4F28::from_bits((value * f64::from(1 << 28)).round() as i32);
+    Dielectric {
+        leaving: q28(index),
+        entering: q28(1.0 / index),
+        normal_reflectance: q30(((index - 1.0) / (index + 1.0)).powi(2)),
+    }
+}
+
+/// What the scene needs of the tracer, wherever it is seen from.
+fn needs(spheres: &[&Sphere]) -> Capabilities {
+    spheres.iter().fold(Capabilities::NONE, |needs, sphere| {
+        let shape = if sphere.hollow {
+            Capability::Hollow
+        } else {
+            Capability::Solid
+        };
+        needs.with(shape).union(match sphere.material {
+            // What only absorbs takes no code.
+            Material::Diffuse([0.0, 0.0, 0.0]) => Capabilities::NONE,
+            Material::Diffuse(_) => Capabilities::of(&[tracer::material::Diffuse::CAPABILITY]),
+            Material::Mirror(_) => Capabilities::of(&[tracer::material::Mirror::CAPABILITY]),
+            Material::Glass { .. } => Capabilities::of(&[Dielectric::CAPABILITY, Capability::Inside]),
+        })
+    })
+}
+
+/// The solids that rays start within.
+fn opened(scene: &Scene, spheres: &[&Sphere], width: u16, height: u16) -> PrimitiveSet {
+    let patch = StartPatch::new(&scene.camera, width, height, FILTER);
+    let mut opened = PrimitiveSet::EMPTY;
+    for (index, sphere) in spheres.iter().enumerate() {
+        if is_cut_open(sphere, &patch) {
+            opened.insert(PrimitiveId::new(index));
+        }
+    }
+    opened
+}
+
 /// To 16:16; scene validation keeps values within it.
-fn q16(value: f64) -> i32 {
-    (value * 65536.0).round() as i32
+fn q16(value: f64) -> I16F16 {
+    I16F16::from_bits((value * 65536.0).round() as i32)
+}
+
+fn q30(value: f64) -> I2F30 {
+    I2F30::from_bits((value * f64::from(1 << 30)).round() as i32)
 }
 
 /// To 0:32, where all ones stand for 1: the conversion saturates there.
-fn q0_32(value: f64) -> u32 {
-    (value * 4_294_967_296.0).round() as u32
+fn q0_32(value: f64) -> U0F32 {
+    U0F32::from_bits((value * 4_294_967_296.0).round() as u32)
 }
 
 #[cfg(test)]
@@ -193,11 +254,15 @@ mod tests {
     #[test]
     fn cornell_needs_all_three_materials_and_decodes() {
         let compiled = compile(&cornell(), 256, 192);
-        assert_eq!(compiled.needs.to_string(), "diffuse,mirror,glass");
-        let scene =
-            tracer::scene::Scene::<tracer::numbers::Mixed>::decode::<tracer::scene::All>(&compiled.blob)
-                .unwrap();
-        assert_eq!((scene.hollow().len(), scene.solid().len()), (6, 3));
+        assert_eq!(
+            compiled.needs.to_string(),
+            "hollow,solid,inside,diffuse,mirror,glass"
+        );
+        let primitives = compiled.view().aggregate.primitives;
+        assert_eq!(
+            (primitives.hollow_spheres.len(), primitives.solid_spheres.len()),
+            (6, 3)
+        );
     }
 
     #[test]
@@ -206,7 +271,21 @@ mod tests {
         scene
             .spheres
             .retain(|sphere| matches!(sphere.material, Material::Diffuse(_)));
-        assert_eq!(compile(&scene, 8, 8).needs.to_string(), "diffuse");
+        // The lamp is solid, and black.
+        assert_eq!(compile(&scene, 8, 8).needs.to_string(), "hollow,solid,diffuse");
+    }
+
+    /// A moved camera, and a picture of another size, see the same scene; even where they cut a ball open.
+    #[test]
+    fn a_scene_is_the_same_wherever_it_is_seen_from() {
+        let mut scene = cornell();
+        let there = compile(&scene, 256, 192);
+        scene.camera.position = scene.spheres[6].centre;
+        scene.camera.near = 0.5;
+        let inside = compile(&scene, 64, 64);
+        assert_eq!((inside.id, &inside.blob), (there.id, &there.blob));
+        assert_ne!(inside.camera, there.camera);
+        assert!(inside.needs.has(Capability::TwoSided) && !there.needs.has(Capability::TwoSided));
     }
 
     #[test]
@@ -226,9 +305,9 @@ mod tests {
         ] {
             let mut sphere = cornell().spheres[0].clone();
             sphere.radius = radius;
-            let record = record(&sphere, 0);
-            let found = f64::from(record.reciprocal) * 2f64.powi(i32::from(record.shift) - 44);
-            let exact = 65536.0 / f64::from(record.radius);
+            let record = record(&sphere, MaterialId::new(0));
+            let found = record.reciprocal.to_num::<f64>() * 2f64.powi(i32::from(record.shift) - 13);
+            let exact = 1.0 / record.radius.to_num::<f64>();
             assert!(
                 (found / exact - 1.0).abs() < 2e-9,
                 "{radius}: {found} for {exact}"
@@ -241,8 +320,9 @@ mod tests {
         for (width, height) in [(256, 192), (1, 1), (4096, 16), (16, 4096)] {
             let camera = camera(&cornell().camera, width, height);
             let sum = (0..3).map(|i| {
-                let half = (i64::from(camera.right[i]).abs() + i64::from(camera.up[i]).abs()) / 2;
-                i64::from(camera.forward[i]).abs() + half
+                let [forward, right, up] = [camera.forward, camera.right, camera.up]
+                    .map(|vector| i64::from(vector[i].to_bits()).abs());
+                forward + (right + up) / 2
             });
             assert!(sum.max().unwrap() < 1 << 31, "{width}x{height}");
         }

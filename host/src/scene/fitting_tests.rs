@@ -67,19 +67,15 @@ fn balls_and_rooms_that_reach_across_the_start_of_rays() {
     );
     let scene = Scene::parse("cut.toml", &cut).unwrap();
     let compiled = compile(&scene, 64, 48);
-    assert!(compiled.needs.two_sided);
-    assert_eq!(compiled.needs.to_string(), "diffuse,twosided");
+    assert_eq!(compiled.needs.to_string(), "hollow,solid,twosided,diffuse");
     // The same out of the picture, and behind where rays start.
     for centre in ["[9, 1.2, 0]", "[1.2, 1.2, -8]"] {
         let free = near.replace(
             "centre = [0, 0, -5]\nradius = 2",
             &format!("centre = {centre}\nradius = 0.7"),
         );
-        assert!(
-            !compile(&Scene::parse("free.toml", &free).unwrap(), 64, 48)
-                .needs
-                .two_sided
-        );
+        let free = compile(&Scene::parse("free.toml", &free).unwrap(), 64, 48);
+        assert_eq!(free.needs.to_string(), "hollow,solid,diffuse");
     }
     // A room that ends between the middle and the edge, to the left.
     let second = "[[sphere]]\nname = \"alcove\"\nhollow = true\ncentre = [9, 0, 0]\nradius = 10.8\ndiffuse = [0, 0, 0]\n";
@@ -135,11 +131,11 @@ fn solids_as_large_as_the_reach() {
 /// What the compiler makes of any accepted scene is what a core can work with.
 pub(super) fn check_compiled(scene: &Scene) {
     let compiled = compile(scene, 64, 48);
-    tracer::scene::Scene::<tracer::numbers::Mixed>::decode::<tracer::scene::All>(&compiled.blob).unwrap();
-    for bytes in compiled.blob[tracer::scene::HEADER_BYTES..].chunks(tracer::scene::SPHERE_BYTES) {
-        let record = tracer::scene::SphereRecord::decode(bytes).unwrap();
-        let found = f64::from(record.reciprocal) * 2f64.powi(i32::from(record.shift) - 60);
-        let exact = 1.0 / f64::from(record.radius);
+    let primitives = compiled.view().aggregate.primitives;
+    let hollow = primitives.hollow_spheres.iter().map(|sphere| sphere.0);
+    for record in hollow.chain(primitives.solid_spheres.iter().map(|sphere| sphere.0)) {
+        let found = record.reciprocal.to_num::<f64>() * 2f64.powi(i32::from(record.shift) - 13);
+        let exact = 1.0 / record.radius.to_num::<f64>();
         assert!((found / exact - 1.0).abs() < 2f64.powi(-28), "{record:?}");
     }
 }

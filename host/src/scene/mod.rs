@@ -15,7 +15,7 @@ mod vector;
 
 use std::path::{Path, PathBuf};
 
-pub use compile::{CompiledScene, SceneNeeds, compile};
+pub use compile::{Blob, CompiledScene, compile};
 pub use unit_size::samples_per_unit;
 
 /// A checked scene.
@@ -91,12 +91,12 @@ pub enum Material {
 /// The version of the text format this build reads.
 pub const FORMAT: i64 = 1;
 /// More spheres than this do not fit a core's data memory beside its stack.
-pub const MAX_SPHERES: usize = 64;
+pub const MAX_SPHERES: usize = tracer::scene::MAX_PRIMITIVES;
 /// The largest whole number a signed 16:16 holds; every coordinate and radius stays below it.
 pub const MAX_LENGTH: f64 = 32767.0;
 /// How far from the centre of a hollow sphere a ray may start; of any other, twice as far. It is a third of the 16:16
 /// range, so that no sum of distances and projections leaves it and no sum of squares leaves 32:32 (see
-/// `tracer::numbers::Numbers`). Hollow and glass spheres, which are crossed from side to side, have smaller radii.
+/// `tracer::geometry::sphere::SphereNumbers`). Hollow and glass spheres, which are crossed from side to side, have smaller radii.
 pub const REACH: f64 = 10922.0;
 /// Smaller spheres leave too few of 16 fraction bits for 1/r and r².
 pub const MIN_RADIUS: f64 = 1.0 / 256.0;

@@ -306,10 +306,10 @@ fn empty_scenes_and_full_ones() {
         };
         GOOD.to_owned() + &(0..count).map(ball).collect::<String>()
     };
-    assert!(Scene::parse("test.toml", &balls(62)).is_ok());
-    let found = messages(&balls(63));
+    assert!(Scene::parse("test.toml", &balls(MAX_SPHERES - 2)).is_ok());
+    let found = messages(&balls(MAX_SPHERES - 1));
     assert!(
-        found.len() == 1 && found[0].contains("65 spheres, but a core has room for 64"),
+        found.len() == 1 && found[0].contains("257 spheres, but a core has room for 256"),
         "{found:?}"
     );
 }

@@ -2,18 +2,19 @@
 
 use std::cell::Cell;
 
-use tracer::numbers::Mixed;
+use tracer::camera::Camera;
+use tracer::integrator::{Integrator, Path};
 use tracer::profile::{Precise, Profile};
-use tracer::scene::{All, Scene as CoreScene};
+use tracer::scene::All;
 use tracer::unit::{Plan, Termination, walk};
 
-use super::{Scene, compile};
+use super::{CompiledScene, Scene, compile};
 
 /// Samples per pixel in one unit, unless the whole picture has fewer or they take too long.
 pub(super) const USUAL: u16 = 64;
 /// The fewest: one for each sub-pixel.
 const FEWEST: u16 = 4;
-/// Tests of a ray against a sphere that a pixel of a unit may cost. With 64 spheres that is 28 rays a sample, with one 186; the
+/// Tests of a ray against a sphere that a pixel of a unit may cost. With 256 spheres that is 7 rays a sample, with one 186; the
 /// Cornell box takes 7 of the 107 that it may. On an emulated core such a unit takes a tenth of a second, by profile `paper` one.
 const MOST_TESTS: u64 = 1 << 17;
 /// What a ray costs beside its tests, in tests: to find where it goes on, mostly.
@@ -29,7 +30,9 @@ pub fn samples_per_unit(scene: &Scene, spp: u32, termination: Termination) -> u1
     let usual = USUAL.min(u16::try_from(spp).unwrap_or(USUAL));
     let spheres = scene.spheres.len() as u64;
     let mut samples = usual;
-    for rays in rays_of_pilot(scene, termination) {
+    let pilot = Pilot::new(scene, termination);
+    for unit in 0..pilot.plan.spans() {
+        let rays = pilot.rays_a_sample(unit);
         while samples > FEWEST && u64::from(samples) * rays * (spheres + TESTS_PER_BOUNCE) > MOST_TESTS {
             // Half of it, and still a multiple of 4.
             samples = (samples / 8 * 4).max(FEWEST);
@@ -41,29 +44,47 @@ pub fn samples_per_unit(scene: &Scene, spp: u32, termination: Termination) -> u1
     samples
 }
 
-/// Rays that a sample takes on the average, in each unit of a small picture. Integers all the way, so no host finds others.
-fn rays_of_pilot(scene: &Scene, termination: Termination) -> impl Iterator<Item = u64> {
-    let (width, height) = PILOT;
-    let plan = Plan {
-        width,
-        height,
-        spp: FEWEST.into(),
-        samples_per_unit: FEWEST,
-        seed: 0,
-        termination,
-        epsilon: Precise::EPSILON,
-    };
-    let compiled = compile(scene, width, height).blob;
-    let core = CoreScene::<Mixed>::decode::<All>(&compiled);
-    let core = core.expect("the compiler in this very program wrote the blob");
-    (0..plan.runs()).map(move |unit| {
+/// A small picture by which rays are counted. Integers all the way, so no host counts others.
+struct Pilot {
+    compiled: CompiledScene,
+    plan: Plan,
+}
+
+impl Pilot {
+    fn new(scene: &Scene, termination: Termination) -> Self {
+        let (width, height) = PILOT;
+        Self {
+            compiled: compile(scene, width, height),
+            plan: Plan {
+                width,
+                height,
+                spp: FEWEST.into(),
+                samples_per_unit: FEWEST,
+                seed: 0,
+                termination,
+                epsilon: Precise::EPSILON,
+            },
+        }
+    }
+
+    /// Rays that a sample of this unit takes on the average, rounded up.
+    fn rays_a_sample(&self, unit: u32) -> u64 {
+        let Self { compiled, plan } = self;
+        let path = Path::<Precise, All>::new(plan);
         let (rays, samples) = (Cell::new(0), Cell::new(0));
-        walk::<Precise, All>(&core, &plan, unit, |_, sample| {
-            rays.set(rays.get() + u64::from(sample.rays));
-            samples.set(samples.get() + 1);
-        });
+        walk(
+            &path,
+            &compiled.view(),
+            &Camera::new(&compiled.camera),
+            plan,
+            unit,
+            |_, sample| {
+                rays.set(rays.get() + u64::from(sample.rays));
+                samples.set(samples.get() + 1);
+            },
+        );
         rays.get().div_ceil(samples.get())
-    })
+    }
 }
 
 #[cfg(test)]

@@ -140,10 +140,12 @@ fn the_largest_scene_fits_a_core() {
         "format = 1\n[camera]\nposition = [0, 0, 30]\ndirection = [0, 0, -1]\nplane_height = 0.8\n",
     );
     text += "[[sphere]]\nname = \"room\"\nhollow = true\ncentre = [0, 0, 0]\nradius = 50\nemission = [1, 1, 1]\ndiffuse = [0.5, 0.5, 0.5]\n";
-    for i in 0..63 {
-        let (x, y) = (f64::from(i % 9) * 2.5 - 10.0, f64::from(i / 9) * 2.5 - 7.5);
+    for i in 0..255 {
+        let (x, y) = (f64::from(i % 17) * 1.3 - 10.4, f64::from(i / 17) * 1.3 - 9.1);
+        // A material of its own for each is the most that a scene can take.
+        let green = 0.3 + f64::from(i) / 1000.0;
         text += &format!(
-            "[[sphere]]\nname = \"ball {i}\"\ncentre = [{x}, {y}, 0]\nradius = 1.2\ndiffuse = [0.3, 0.6, 0.9]\n"
+            "[[sphere]]\nname = \"ball {i}\"\ncentre = [{x}, {y}, 0]\nradius = 0.6\ndiffuse = [0.3, {green}, 0.9]\n"
         );
     }
     let folder = tempfile::tempdir().unwrap();

@@ -8,35 +8,37 @@ use host::arithmetic::Arithmetic;
 use host::board::{Board, DTCM_BUDGET, ITCM_BUDGET};
 use host::firmware::{self, Recipe, build};
 use host::fleet::run_to_end;
-use host::scene::SceneNeeds;
+use tracer::scene::{Capabilities, Capability};
 use whole_system::{qemu, said, system_linker, toolchain};
 
-const ALL: SceneNeeds = SceneNeeds {
-    diffuse: true,
-    mirror: true,
-    glass: true,
-    two_sided: true,
-};
-
 /// What the Cornell box needs.
-const CORNELL: SceneNeeds = SceneNeeds {
-    two_sided: false,
-    ..ALL
-};
+const CORNELL: Capabilities = Capabilities::of(&[
+    Capability::Hollow,
+    Capability::Solid,
+    Capability::Inside,
+    Capability::Diffuse,
+    Capability::Mirror,
+    Capability::Glass,
+    Capability::Roulette,
+]);
 
-fn recipe(profile: Arithmetic, needs: SceneNeeds) -> Recipe {
+fn recipe(profile: Arithmetic, needs: Capabilities) -> Recipe {
     Recipe {
         profile,
         needs,
-        roulette: true,
         log: None,
     }
 }
 
 /// Builds one of a board's examples, and says where its ELF is.
 fn example(board: Board, name: &str) -> (Output, PathBuf) {
-    let mut command =
-        firmware::cargo(&toolchain(), board, "build", &recipe(Arithmetic::Precise, ALL)).unwrap();
+    let mut command = firmware::cargo(
+        &toolchain(),
+        board,
+        "build",
+        &recipe(Arithmetic::Precise, Capabilities::ALL),
+    )
+    .unwrap();
     let output = command.args(["--example", name]).output().unwrap();
     (output, firmware::example(board, name).unwrap())
 }
@@ -44,8 +46,13 @@ fn example(board: Board, name: &str) -> (Output, PathBuf) {
 /// As [`example`], but linked by the linker of a machine without rustup, which may be years older than the compiler.
 fn linked_by_the_system(board: Board, name: &str) -> (Output, PathBuf) {
     // All but the last crate are compiled already.
-    let mut command =
-        firmware::cargo(&toolchain(), board, "rustc", &recipe(Arithmetic::Precise, ALL)).unwrap();
+    let mut command = firmware::cargo(
+        &toolchain(),
+        board,
+        "rustc",
+        &recipe(Arithmetic::Precise, Capabilities::ALL),
+    )
+    .unwrap();
     command.args(["--example", name, "--", "-Clinker-flavor=gnu-lld"]);
     command.arg(format!("-Clinker={}", system_linker().display()));
     (command.output().unwrap(), firmware::example(board, name).unwrap())
@@ -146,15 +153,18 @@ fn every_image_fits_and_holds_no_more_than_its_scene_needs() {
         .into_iter()
         .flat_map(|board| Arithmetic::ALL.map(|profile| (board, profile)));
     for (board, profile) in cases {
-        let full = build(&toolchain, board, &recipe(profile, ALL)).unwrap().size;
+        let full = build(&toolchain, board, &recipe(profile, Capabilities::ALL))
+            .unwrap()
+            .size;
         println!("{board}, {profile}: {full}");
         assert!(full.float_symbols.is_empty());
         assert!(full.itcm_bytes <= ITCM_BUDGET && full.dtcm_bytes + full.stack_bytes <= DTCM_BUDGET);
-        let plain = SceneNeeds {
-            mirror: false,
-            glass: false,
-            ..CORNELL
-        };
+        let plain = Capabilities::of(&[
+            Capability::Hollow,
+            Capability::Solid,
+            Capability::Diffuse,
+            Capability::Roulette,
+        ]);
         let plain = build(&toolchain, board, &recipe(profile, plain)).unwrap().size;
         println!("{board}, {profile}, diffuse only: {plain}");
         assert!(

@@ -11,10 +11,10 @@ use host::firmware::{Image, Recipe, build};
 use host::job::options::RenderOptions;
 use host::job::render;
 use host::log::Level;
-use host::scene::SceneNeeds;
 use object::{Object, ObjectSection, ObjectSymbol};
 use serde_json::Value;
 use tracer::profile::Precise;
+use tracer::scene::Capabilities;
 use whole_system::{cornell, film, plan, repository, toolchain};
 
 #[derive(Parser)]
@@ -24,16 +24,9 @@ struct Flags {
 }
 
 fn image(board: Board, profile: Arithmetic, log: Option<Level>) -> Image {
-    let needs = SceneNeeds {
-        diffuse: true,
-        mirror: true,
-        glass: true,
-        two_sided: false,
-    };
     let recipe = Recipe {
         profile,
-        needs,
-        roulette: true,
+        needs: Capabilities::ALL,
         log,
     };
     build(&toolchain(), board, &recipe).unwrap()

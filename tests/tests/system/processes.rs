@@ -9,9 +9,9 @@ use std::time::{Duration, Instant};
 use host::arithmetic::Arithmetic;
 use host::board::Board;
 use host::firmware::{self, Recipe};
-use host::scene::SceneNeeds;
 use serde_json::Value;
 use tempfile::TempDir;
+use tracer::scene::Capabilities;
 use whole_system::{program, repository, said, toolchain, xtask};
 
 /// A picture that takes an emulated core a moment.
@@ -242,16 +242,9 @@ fn no_core_outlives_a_host_that_is_killed() {
 
 #[test]
 fn the_collector_takes_cores_that_are_started_elsewhere() {
-    let needs = SceneNeeds {
-        diffuse: true,
-        mirror: true,
-        glass: true,
-        two_sided: false,
-    };
     let recipe = Recipe {
         profile: Arithmetic::Precise,
-        needs,
-        roulette: true,
+        needs: Capabilities::ALL,
         log: None,
     };
     let image = firmware::build(&toolchain(), Board::Versatilepb, &recipe).expect("an image");

@@ -5,6 +5,7 @@ use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::rc::Rc;
 
+use fixedmath::U48F16;
 use node::{Clock, Fault, Network, Outcome, SendError, StackUse, Worker};
 use tracer::unit::Sums;
 use wire::boot::{PixelOrder, Termination};
@@ -179,7 +180,7 @@ pub(crate) fn run(
     let mut renderer = |unit: u32, sums: &mut Sums| {
         let mut world = world.borrow_mut();
         world.now = world.now.wrapping_add(RENDER_TICKS);
-        sums[0] = [u64::from(unit), 0, wire::SUM_MAX];
+        sums[0] = [u64::from(unit), 0, wire::SUM_MAX].map(U48F16::from_bits);
         7
     };
     let mut clock = FakeClock(world.clone());

@@ -1,0 +1,107 @@
+//! The number formats a tracer works in, and the operations it needs of them.
+//!
+//! Each trait stands beside what needs it: formats, directions and samples here, the film's in [`crate::camera`], light's in
+//! [`crate::material`], a shape's or a BSDF's in its own file. [`Numbers`] is all of them.
+
+mod mixed;
+mod published;
+
+pub use mixed::Mixed;
+pub use published::Published;
+
+use core::fmt::Debug;
+use core::ops::{Add, Neg, Sub};
+
+use fixedmath::{I2F30, I16F16};
+
+use crate::camera::FilmNumbers;
+use crate::geometry::ShapeNumbers;
+use crate::material::{MaterialNumbers, RadianceNumbers};
+
+/// Everything a tracer computes with.
+pub trait Numbers: Sampling + FilmNumbers + RadianceNumbers + ShapeNumbers + MaterialNumbers {}
+
+impl<N: Sampling + FilmNumbers + RadianceNumbers + ShapeNumbers + MaterialNumbers> Numbers for N {}
+
+/// Formats of lengths and of directions' components.
+///
+/// Conversions are from the scene's formats, so one scene serves every profile and the double-precision oracle. Ranges are the
+/// scene compiler's to guarantee: no length, and no difference of a distance and a projection, leaves 16:16.
+pub trait Formats: Copy + Debug + 'static {
+    /// Positions and distances.
+    type Length: Copy
+        + Debug
+        + Send
+        + Sync
+        + PartialOrd
+        + Add<Output = Self::Length>
+        + Sub<Output = Self::Length>;
+    /// Components of directions, cosines and probabilities: [-1, 1].
+    type Unit: Copy
+        + Debug
+        + Send
+        + Sync
+        + PartialOrd
+        + Add<Output = Self::Unit>
+        + Sub<Output = Self::Unit>
+        + Neg<Output = Self::Unit>;
+
+    /// No length.
+    const NOTHING: Self::Length;
+    /// Longer than any distance in a scene.
+    const FAR: Self::Length;
+    /// A cosine of 0.
+    const ZERO: Self::Unit;
+    /// A cosine or probability of 1.
+    const ONE: Self::Unit;
+
+    /// A length of the scene.
+    fn length(length: I16F16) -> Self::Length;
+    /// A direction's component, or a probability.
+    fn unit(component: I2F30) -> Self::Unit;
+    /// `l u`.
+    fn scale(l: Self::Length, u: Self::Unit) -> Self::Length;
+}
+
+/// Operations on directions.
+pub trait Directions: Formats {
+    /// `a . b`.
+    fn cosine(a: [Self::Unit; 3], b: [Self::Unit; 3]) -> Self::Unit;
+    /// `a b`, cut to its format.
+    fn times(a: Self::Unit, b: Self::Unit) -> Self::Unit;
+    /// `v` brought to unit length, or `otherwise` where it has next to none. Components lie in [-2, 2).
+    fn normalised(v: [Self::Unit; 3], otherwise: [Self::Unit; 3]) -> [Self::Unit; 3];
+    /// Half the sum of two unit vectors brought to unit length, or `otherwise`.
+    fn bisector(a: [Self::Unit; 3], b: [Self::Unit; 3], otherwise: [Self::Unit; 3]) -> [Self::Unit; 3];
+    /// A nearly unit vector put back to unit length.
+    fn renormalised(v: [Self::Unit; 3]) -> [Self::Unit; 3];
+}
+
+/// Samples from uniform fractions, which are the 32 bits of numbers in [0, 1).
+pub trait Sampling: Directions {
+    /// Cosine and sine of `turn` / 2^32 turns.
+    fn cos_sin(turn: u32) -> (Self::Unit, Self::Unit);
+    /// `fraction` / 2^31 - 1: uniform in [-1, 1).
+    fn signed(fraction: u32) -> Self::Unit;
+    /// The root of `fraction` / 2^32.
+    fn root_of(fraction: u32) -> Self::Unit;
+    /// `sqrt(1 - z^2)`.
+    fn complement(z: Self::Unit) -> Self::Unit;
+    /// Whether `fraction` / 2^32 lies below a probability.
+    fn below(fraction: u32, probability: Self::Unit) -> bool;
+
+    /// The tent filter's distribution on (-1, 1), by inversion. The top bit of the fraction says which slope, the others how
+    /// far up it.
+    fn tent(fraction: u32) -> Self::Unit {
+        let offset = Self::ONE - Self::root_of(fraction << 1 | 1);
+        if fraction >> 31 == 0 { -offset } else { offset }
+    }
+
+    /// A point of the unit sphere, uniform by area.
+    fn on_sphere(height: u32, turn: u32) -> [Self::Unit; 3] {
+        let height = Self::signed(height);
+        let (cosine, sine) = Self::cos_sin(turn);
+        let radius = Self::complement(height);
+        [Self::times(cosine, radius), Self::times(sine, radius), height]
+    }
+}

@@ -1,0 +1,139 @@
+//! All primitives of a scene: one array a kind of shape, numbered through.
+
+use super::Shape;
+
+/// The number of a primitive in its scene: kinds in their order, and each kind's in the order of its records.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PrimitiveId(u32);
+
+impl PrimitiveId {
+    /// The primitive at `index`, from 0.
+    #[inline]
+    pub const fn new(index: usize) -> Self {
+        Self(index as u32)
+    }
+
+    /// Its place, from 0.
+    #[inline]
+    pub const fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// A set of primitives by their ids.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(transparent)]
+pub struct PrimitiveSet([u32; PrimitiveSet::WORDS]);
+
+impl PrimitiveSet {
+    const WORDS: usize = crate::scene::MAX_PRIMITIVES.div_ceil(32);
+
+    /// No primitive.
+    pub const EMPTY: Self = Self([0; Self::WORDS]);
+
+    /// Whether there is none in it.
+    pub fn is_empty(&self) -> bool {
+        self.0 == [0; Self::WORDS]
+    }
+
+    /// Whether it holds a primitive.
+    #[inline]
+    pub fn contains(&self, primitive: PrimitiveId) -> bool {
+        let index = primitive.index();
+        self.0
+            .get(index / 32)
+            .is_some_and(|word| word >> (index % 32) & 1 == 1)
+    }
+
+    /// Adds a primitive; those past the most that a scene has are none.
+    pub fn insert(&mut self, primitive: PrimitiveId) {
+        let index = primitive.index();
+        if let Some(word) = self.0.get_mut(index / 32) {
+            *word |= 1 << (index % 32);
+        }
+    }
+}
+
+/// What is done with primitives of whichever kind.
+pub trait Visitor {
+    /// Looks at all primitives of a kind; the first of them has the id of `first`.
+    fn visit<S: Shape>(&mut self, first: usize, shapes: &[S]);
+}
+
+/// The list of shapes: an array in [`Primitives`], the shape and the arithmetic it needs, in the order of their records.
+macro_rules! shapes {
+    ($($(#[$meta:meta])* $array:ident: $shape:ident, $numbers:ident;)+) => {
+        /// What all shapes together need of the number formats.
+        pub trait ShapeNumbers: $($numbers +)+ {}
+
+        impl<N: $($numbers +)+> ShapeNumbers for N {}
+
+        /// Kinds of shape.
+        pub const KINDS: usize = [$(stringify!($array)),+].len();
+
+        /// The primitives of a scene.
+        #[derive(Clone, Copy, Debug, Default)]
+        pub struct Primitives<'s> {
+            $($(#[$meta])* pub $array: &'s [$shape],)+
+        }
+
+        impl<'s> Primitives<'s> {
+            /// Primitives in all.
+            pub const fn len(&self) -> usize {
+                0 $(+ self.$array.len())+
+            }
+
+            /// Whether there is none.
+            pub const fn is_empty(&self) -> bool {
+                self.len() == 0
+            }
+
+            /// Takes the records of so many of each kind from the front of a scene's bytes.
+            pub(crate) fn take(
+                bytes: &mut &'s [u8],
+                [$($array),+]: [u16; KINDS],
+            ) -> Result<Self, $crate::scene::BlobError> {
+                Ok(Self {
+                    $($array: $crate::scene::take_records(bytes, $array)?,)+
+                })
+            }
+
+            /// Shows a visitor one kind after the other.
+            #[inline]
+            pub fn visit(&self, visitor: &mut impl $crate::geometry::Visitor) {
+                let mut first = 0;
+                $(
+                    visitor.visit(first, self.$array);
+                    first += self.$array.len();
+                )+
+                let _all = first;
+            }
+
+            /// What `f` makes of the one primitive of this id; none where there is none.
+            #[inline]
+            pub fn with<T>(
+                &self,
+                primitive: $crate::geometry::PrimitiveId,
+                f: impl $crate::geometry::OnShape<T>,
+            ) -> Option<T> {
+                let index = primitive.index();
+                $(
+                    if let Some(shape) = self.$array.get(index) {
+                        return Some(f.call(shape));
+                    }
+                    let index = index - self.$array.len();
+                )+
+                let _past_the_last = index;
+                None
+            }
+        }
+    };
+}
+
+/// A function of one shape of whichever kind.
+pub trait OnShape<T> {
+    /// Calls it.
+    fn call<S: Shape>(self, shape: &S) -> T;
+}
+
+pub(super) use shapes;

@@ -1,0 +1,81 @@
+//! The sphere seen from within.
+
+use bytemuck::{Pod, Zeroable};
+
+use super::{Length, SphereNumbers, SphereRecord, chord};
+use crate::arithmetic::Formats;
+use crate::geometry::{Bounds, Hit, Interaction, Ray, Shape, Standing};
+use crate::material::MaterialId;
+use crate::profile::{Profile, Quadratic};
+use crate::scene::{Capability, Needs};
+
+/// A sphere that everything outside of is solid: a wall or a room.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+#[repr(transparent)]
+pub struct HollowSphere(pub SphereRecord);
+
+impl Shape for HollowSphere {
+    const CAPABILITY: Capability = Capability::Hollow;
+
+    fn is_sound(&self) -> bool {
+        self.0.is_sound()
+    }
+
+    fn material(&self) -> MaterialId {
+        self.0.material
+    }
+
+    /// By [`Quadratic::Power`]: only the far root is a surface, and it is nearer than `t_max` exactly when `t_max > b` and
+    /// `(t_max - b)^2 > b^2 + p`, which says without a root whether to take the root.
+    #[inline]
+    fn closest<P: Profile, F: Needs>(
+        &self,
+        ray: &Ray<P::Numbers>,
+        standing: Standing,
+        epsilon: Length<P>,
+        t_max: Length<P>,
+    ) -> Option<Length<P>> {
+        if matches!(P::QUADRATIC, Quadratic::Textbook) {
+            return self.0.textbook::<P>(ray, epsilon, t_max);
+        }
+        let to_centre = self.0.to_centre::<P>(ray);
+        let b = P::Numbers::length_of(P::Numbers::project(to_centre, ray.direction));
+        if standing.departs {
+            return chord::<P>(b, epsilon, t_max);
+        }
+        let beyond = t_max - b;
+        if beyond <= P::Numbers::NOTHING {
+            return None;
+        }
+        let square = P::Numbers::square(self.0.square);
+        let discriminant = P::Numbers::product(b, b) + (square - P::Numbers::dot(to_centre, to_centre));
+        if P::Numbers::product(beyond, beyond) <= discriminant {
+            return None;
+        }
+        // Rounding may have put the start an ulp outside: then the hit is at once, and not behind.
+        let t = b + P::Numbers::root(discriminant);
+        Some(if t < P::Numbers::NOTHING {
+            P::Numbers::NOTHING
+        } else {
+            t
+        })
+    }
+
+    #[inline]
+    fn interaction<P: Profile, F: Needs>(
+        &self,
+        ray: &Ray<P::Numbers>,
+        standing: Standing,
+        hit: Hit<P::Numbers>,
+    ) -> Interaction<P::Numbers> {
+        let crosses = self.0.has_inside::<F>() && standing.departs;
+        Interaction {
+            from_inside: true,
+            ..self.0.surface::<P>(ray, hit, crosses)
+        }
+    }
+
+    fn bounds(&self) -> Bounds {
+        self.0.bounds()
+    }
+}

@@ -1,0 +1,157 @@
+//! Spheres, of two kinds: hollow ones are seen from within, solid ones from without.
+//!
+//! With `b = (c - o) . d` and the power of the origin turned round, `p = r^2 - |c - o|^2` (positive inside), a ray meets a sphere
+//! at `b - sqrt(b^2 + p)` and `b + sqrt(b^2 + p)`. How the profile solves that is [`Quadratic`].
+
+mod hollow;
+mod numbers;
+mod solid;
+
+pub use hollow::HollowSphere;
+pub use numbers::SphereNumbers;
+pub use solid::SolidSphere;
+
+use bytemuck::{Pod, Zeroable};
+use fixedmath::{I1F31, I16F16, I32F32};
+
+use super::vector::{reflected, sub};
+use super::{Bounds, Hit, Interaction, Ray};
+use crate::arithmetic::Formats;
+use crate::material::MaterialId;
+use crate::profile::{Profile, Quadratic};
+use crate::scene::{Capability, Needs};
+
+/// 1 / r as `mantissa` 2^(`shift` - 13): a point of the sphere shifted left by `shift` and multiplied has no more than 62 bits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Reciprocal {
+    /// (1/2, 1].
+    pub mantissa: I1F31,
+    /// Below 32.
+    pub shift: u8,
+}
+
+/// A sphere's record, eight words.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct SphereRecord {
+    /// Radius squared, exactly.
+    pub square: I32F32,
+    /// Centre.
+    pub centre: [I16F16; 3],
+    /// Radius.
+    pub radius: I16F16,
+    /// The mantissa of 1 / r.
+    pub reciprocal: I1F31,
+    /// See [`Reciprocal`].
+    pub shift: u8,
+    /// 1 where light goes through the surface, so that rays are within, too; else 0.
+    pub has_inside: u8,
+    /// What it is made of.
+    pub material: MaterialId,
+}
+
+const _: () = assert!(size_of::<SphereRecord>() == 32);
+
+type Length<P> = <<P as Profile>::Numbers as Formats>::Length;
+
+impl SphereRecord {
+    fn is_sound(&self) -> bool {
+        self.shift < 32 && self.has_inside <= 1
+    }
+
+    fn reciprocal(&self) -> Reciprocal {
+        Reciprocal {
+            mantissa: self.reciprocal,
+            shift: self.shift,
+        }
+    }
+
+    /// Whether rays are within, for an image that is capable of that.
+    #[inline]
+    fn has_inside<F: Needs>(&self) -> bool {
+        F::NEEDS.has(Capability::Inside) && self.has_inside != 0
+    }
+
+    fn bounds(&self) -> Bounds {
+        Bounds::around(self.centre, self.radius)
+    }
+
+    #[inline]
+    fn to_centre<P: Profile>(&self, ray: &Ray<P::Numbers>) -> [Length<P>; 3] {
+        sub(self.centre.map(P::Numbers::length), ray.origin)
+    }
+
+    /// smallpt's: `b - sqrt(b^2 - |c - o|^2 + r^2)`, else the other root, whichever first exceeds epsilon.
+    #[inline]
+    fn textbook<P: Profile>(
+        &self,
+        ray: &Ray<P::Numbers>,
+        epsilon: Length<P>,
+        t_max: Length<P>,
+    ) -> Option<Length<P>> {
+        let to_centre = self.to_centre::<P>(ray);
+        let b = P::Numbers::project(to_centre, ray.direction);
+        let discriminant =
+            P::Numbers::squared(b) - P::Numbers::dot(to_centre, to_centre) + P::Numbers::square(self.square);
+        if discriminant < P::Numbers::NO_SQUARE {
+            return None;
+        }
+        let (b, root) = (P::Numbers::length_of(b), P::Numbers::root(discriminant));
+        let (near, far) = (b - root, b + root);
+        let t = if near > epsilon { near } else { far };
+        (t > epsilon && t < t_max).then_some(t)
+    }
+
+    /// The surface at a hit; whether the ray comes from inside is the kind's to say.
+    ///
+    /// By [`Quadratic::Power`] the point is put back on its sphere. Where a ray crosses the inside from one end of a chord to the
+    /// other, the normal where it arrives is the normal where it left, mirrored in the plane across the ray: that is taken from
+    /// directions alone, and so the angle with the surface is the same at both ends to 2^-29, however coarse the positions are
+    /// beside the radius. Were it taken from positions, light that grazed a small glass ball could find itself past the critical
+    /// angle within, and stay there.
+    #[inline(always)]
+    fn surface<P: Profile>(
+        &self,
+        ray: &Ray<P::Numbers>,
+        hit: Hit<P::Numbers>,
+        crosses: bool,
+    ) -> Interaction<P::Numbers> {
+        let centre = self.centre.map(P::Numbers::length);
+        let along = |i: usize| P::Numbers::scale(hit.t, ray.direction[i]);
+        let (point, normal) = match P::QUADRATIC {
+            Quadratic::Textbook => {
+                let point = [0, 1, 2].map(|i| ray.origin[i] + along(i));
+                (
+                    point,
+                    P::Numbers::normal(sub(point, centre), self.radius, self.reciprocal()),
+                )
+            }
+            Quadratic::Power => {
+                let normal = match &ray.departure {
+                    Some(departure) if crosses => reflected::<P::Numbers>(departure.normal, ray.direction),
+                    _ => {
+                        let from_centre = [0, 1, 2].map(|i| ray.origin[i] - centre[i] + along(i));
+                        P::Numbers::normal(from_centre, self.radius, self.reciprocal())
+                    }
+                };
+                let radius = P::Numbers::length(self.radius);
+                let point = [0, 1, 2].map(|i| centre[i] + P::Numbers::scale(radius, normal[i]));
+                (point, normal)
+            }
+        };
+        Interaction {
+            point,
+            normal,
+            from_inside: false,
+            primitive: hit.primitive,
+            material: self.material,
+        }
+    }
+}
+
+/// The far end of the chord that starts where a ray leaves a sphere, exactly `2 b`.
+#[inline]
+fn chord<P: Profile>(b: Length<P>, epsilon: Length<P>, t_max: Length<P>) -> Option<Length<P>> {
+    let t = b + b;
+    (t > epsilon && t < t_max).then_some(t)
+}

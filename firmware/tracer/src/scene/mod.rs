@@ -1,0 +1,35 @@
+//! The scene as a core has it: a view of the bytes that the host's compiler writes.
+
+mod capability;
+mod format;
+
+pub use capability::{All, Capabilities, Capability, Needs};
+pub(crate) use format::take_records;
+pub use format::{BlobError, Header, MAX_BYTES, MAX_PRIMITIVES};
+
+use crate::aggregate::Linear;
+use crate::camera::CameraRecord;
+use crate::material::MaterialRecord;
+
+/// What there is. [`Scene::view`] makes it, [`Scene::seen_from`] says from where it is looked at.
+#[derive(Clone, Copy, Debug)]
+pub struct Scene<'s> {
+    /// The shapes.
+    pub aggregate: Linear<'s>,
+    /// What they are made of.
+    pub materials: &'s [MaterialRecord],
+}
+
+impl<'s> Scene<'s> {
+    /// The scene as this camera sees it, for an image with these capabilities.
+    pub fn seen_from(self, camera: &'s CameraRecord, image: Capabilities) -> Result<Self, BlobError> {
+        if !image.covers(camera.needs()) {
+            return Err(BlobError::NotInThisImage);
+        }
+        let aggregate = Linear {
+            opened: &camera.opened,
+            ..self.aggregate
+        };
+        Ok(Self { aggregate, ..self })
+    }
+}
