@@ -9,8 +9,8 @@ use core::hint::black_box;
 use board::Core;
 use runtime::{Board, Exit};
 
-/// Three quarters of data memory: it fits by itself, but not with the stacks.
-static mut TOO_MUCH: [u32; 12 * 1024] = [0; 12 * 1024];
+/// More than half of what the boot block leaves of data memory: it fits by itself, but not with the stacks.
+static mut TOO_MUCH: [u32; 6 * 1024] = [0; 6 * 1024];
 
 #[board::entry]
 fn start() -> ! {

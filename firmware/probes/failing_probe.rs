@@ -6,7 +6,7 @@
 use board::Core;
 use node::ethernet::Ethernet;
 use node::{Network, SendError, Words};
-use runtime::image::{ImageNeeds, ImageProfile};
+use runtime::image::{ImageIntegrator, ImageProfile};
 use runtime::{Board, Exit, die, memory};
 use wire::{Boot, FromCore, Message, Name};
 
@@ -27,7 +27,7 @@ fn start() -> ! {
         good_units: if boot.core == 0 { GOOD_UNITS } else { u32::MAX },
     };
     let name = Name::new(Core::NAME);
-    match node::run::<ImageProfile, ImageNeeds>(&boot, name, network, Core::clock(), memory::stack_use) {
+    match node::run::<ImageProfile, ImageIntegrator>(&boot, name, network, Core::clock(), memory::stack_use) {
         Ok(_) => Core::exit(Exit::Done),
         Err(fault) => die::<Core>(&Words::of(fault.as_str()), Exit::Fault),
     }

@@ -16,6 +16,7 @@ use crate::division;
 /// Error up to 0.0562 (3,678 ulp): the shape is right at the zeros and the peaks, and nowhere between.
 ///
 /// Cost: 6 instructions.
+#[doc(alias = "sin")]
 pub const fn parabolic_sine(turn: u32) -> I16F16 {
     // 0:16 turns in [-1/2, 1/2), and the parabola's two factors in 16:16.
     let t = (turn as i32) >> 16;
@@ -27,6 +28,7 @@ pub const fn parabolic_sine(turn: u32) -> I16F16 {
 /// Error up to 0.00122 (80 ulp), a tenth of it from dropping the turn's lower 16 bits.
 ///
 /// Cost: 15 instructions.
+#[doc(alias = "sin")]
 pub const fn refined_parabolic_sine(turn: u32) -> I16F16 {
     /// 0.225 in 0:16.
     const BEND: i32 = 14_746;
@@ -123,6 +125,7 @@ pub const fn quadratic_cos_sin(turn: u32) -> (I2F30, I2F30) {
 /// assert_eq!(angle::sine(1 << 30), I16F16::ONE);
 /// assert_eq!(angle::sine(1 << 31), I16F16::ZERO);
 /// ```
+#[doc(alias = "sin")]
 #[inline]
 pub const fn sine(turn: u32) -> I16F16 {
     I16F16::from_bits((quadratic_cos_sin(turn).1.to_bits() + (1 << 13)) >> 14)
@@ -131,6 +134,7 @@ pub const fn sine(turn: u32) -> I16F16 {
 /// Cosine of `turn` / 2^32 turns in 16:16: within 0.67 ulp, as [`sine`].
 ///
 /// Cost: 16 instructions.
+#[doc(alias = "cos")]
 #[inline]
 pub const fn cosine(turn: u32) -> I16F16 {
     I16F16::from_bits((quadratic_cos_sin(turn).0.to_bits() + (1 << 13)) >> 14)
@@ -148,6 +152,7 @@ pub const fn cosine(turn: u32) -> I16F16 {
 /// let (cosine, sine) = angle::cos_sin(1 << 30);
 /// assert_eq!((cosine, sine), (I2F30::ZERO, I2F30::ONE));
 /// ```
+#[doc(alias("sin_cos", "sincos"))]
 pub const fn cos_sin(turn: u32) -> (I2F30, I2F30) {
     // Horner's scheme in the upper halves of products: each step by w (2:30) moves the binary point two places down. These
     // are magnitudes of alternating signs: what is known to be positive, LLVM multiplies badly as a signed number.
@@ -186,6 +191,7 @@ pub const fn cos_sin(turn: u32) -> (I2F30, I2F30) {
 /// assert_eq!(angle::of_vector(none, one), 1 << 30);
 /// assert_eq!(angle::of_vector(-one, none), 1 << 31);
 /// ```
+#[doc(alias = "atan2")]
 #[inline]
 pub const fn of_vector(x: I16F16, y: I16F16) -> u32 {
     let (width, height) = (x.to_bits().unsigned_abs(), y.to_bits().unsigned_abs());

@@ -21,6 +21,7 @@ use fixed::types::I16F16;
 /// assert_eq!(division::restoring(one, three), I16F16::from_bits(21845));
 /// assert_eq!(division::restoring(one, I16F16::ZERO), I16F16::MAX);
 /// ```
+#[doc(alias = "div")]
 pub const fn restoring(a: I16F16, b: I16F16) -> I16F16 {
     let negative = (a.to_bits() < 0) != (b.to_bits() < 0);
     let limit = if negative { 1u32 << 31 } else { i32::MAX as u32 };
@@ -76,6 +77,7 @@ const fn restoring_bits(mut remainder: u32, mut low: u32, divisor: u32) -> u32 {
 /// assert_eq!(division::nearest(-two, I16F16::ZERO), I16F16::MIN);
 /// assert_eq!(division::nearest(I16F16::MIN, -I16F16::ONE), I16F16::MAX);
 /// ```
+#[doc(alias = "div")]
 #[inline]
 pub const fn nearest(a: I16F16, b: I16F16) -> I16F16 {
     let sign = (a.to_bits() ^ b.to_bits()) >> 31;
@@ -97,6 +99,7 @@ pub const fn nearest(a: I16F16, b: I16F16) -> I16F16 {
 /// use fixedmath::{division, I16F16};
 /// assert_eq!(division::reciprocal(I16F16::from_num(-3)), I16F16::from_bits(-21845));
 /// ```
+#[doc(alias("div", "recip"))]
 #[inline]
 pub const fn reciprocal(x: I16F16) -> I16F16 {
     let sign = x.to_bits() >> 31;

@@ -23,6 +23,7 @@ static POWERS: [u32; 32] = powers();
 /// assert_eq!(exponential::natural(I16F16::ONE), I16F16::from_bits(178_145));
 /// assert_eq!(exponential::natural(I16F16::MAX), I16F16::MAX);
 /// ```
+#[doc(alias = "exp")]
 #[inline]
 pub const fn natural(x: I16F16) -> I16F16 {
     /// log2 e in 2:30, and what that is too large in 2^-41.

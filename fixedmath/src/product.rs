@@ -56,6 +56,7 @@ const fn units(bits: Option<i32>) -> Option<I2F30> {
 /// `a b` rounded down, the published multiply: within 1 ulp below. Saturates.
 ///
 /// Cost: 7 instructions.
+#[doc(alias = "mul")]
 #[inline]
 pub const fn truncated(a: I16F16, b: I16F16) -> I16F16 {
     I16F16::from_bits(floored::<16>(wide(a.to_bits(), b.to_bits())))
@@ -64,6 +65,7 @@ pub const fn truncated(a: I16F16, b: I16F16) -> I16F16 {
 /// [`truncated`] modulo 2^32 ulp, for products known to fit.
 ///
 /// Cost: 3 instructions.
+#[doc(alias = "mul")]
 #[inline]
 pub const fn wrapping_truncated(a: I16F16, b: I16F16) -> I16F16 {
     I16F16::from_bits((wide(a.to_bits(), b.to_bits()) >> 16) as i32)
@@ -84,6 +86,7 @@ pub const fn checked_truncated(a: I16F16, b: I16F16) -> Option<I16F16> {
 /// assert_eq!(product::nearest(third, third), I16F16::from_bits(7282));
 /// assert_eq!(product::nearest(I16F16::MAX, I16F16::MAX), I16F16::MAX);
 /// ```
+#[doc(alias = "mul")]
 #[inline]
 pub fn nearest(a: I16F16, b: I16F16) -> I16F16 {
     I16F16::from_bits(assembly::saturated::<16>(wide(a.to_bits(), b.to_bits())))
@@ -92,6 +95,7 @@ pub fn nearest(a: I16F16, b: I16F16) -> I16F16 {
 /// [`nearest`] modulo 2^32 ulp, for products known to fit.
 ///
 /// Cost: 3 instructions.
+#[doc(alias = "mul")]
 #[inline]
 pub fn wrapping_nearest(a: I16F16, b: I16F16) -> I16F16 {
     I16F16::from_bits(assembly::rounded::<16>(wide(a.to_bits(), b.to_bits())))
@@ -113,6 +117,7 @@ pub const fn checked_nearest(a: I16F16, b: I16F16) -> Option<I16F16> {
 /// component outside [-1, 1] can bring about.
 ///
 /// Cost: 6 instructions.
+#[doc(alias = "mul")]
 #[inline]
 pub fn scaled(length: I16F16, component: I2F30) -> I16F16 {
     I16F16::from_bits(assembly::saturated::<30>(wide(
@@ -156,6 +161,7 @@ pub const fn checked_truncated_scaled(length: I16F16, component: I2F30) -> Optio
 /// components outside [-1, 1] can bring about.
 ///
 /// Cost: 6 instructions.
+#[doc(alias = "mul")]
 #[inline]
 pub fn of_units(a: I2F30, b: I2F30) -> I2F30 {
     I2F30::from_bits(assembly::saturated::<30>(wide(a.to_bits(), b.to_bits())))
@@ -184,6 +190,7 @@ pub const fn checked_of_units(a: I2F30, b: I2F30) -> Option<I2F30> {
 /// let sum = product::accumulate(I32F32::ONE, two, three);
 /// assert_eq!(product::rounded(sum), I16F16::from_num(7));
 /// ```
+#[doc(alias("mla", "mul_add"))]
 #[inline]
 pub const fn accumulate(sum: I32F32, a: I16F16, b: I16F16) -> I32F32 {
     I32F32::from_bits(sum.to_bits().saturating_add(wide(a.to_bits(), b.to_bits())))

@@ -25,6 +25,7 @@ pub(crate) use kernel::{normalised, reciprocal};
 /// use fixedmath::{root, I16F16};
 /// assert_eq!(root::restoring(I16F16::from_num(2)), I16F16::from_bits(92681));
 /// ```
+#[doc(alias = "sqrt")]
 pub const fn restoring(x: I16F16) -> I16F16 {
     if x.to_bits() < 0 {
         return I16F16::ZERO;
@@ -58,6 +59,7 @@ pub const fn checked_restoring(x: I16F16) -> Option<I16F16> {
 /// A negative argument gives 0; a root past 32,767 saturates.
 ///
 /// Cost: 354 instructions.
+#[doc(alias = "sqrt")]
 pub const fn split(x: I48F16) -> I16F16 {
     if x.to_bits() < 0 {
         return I16F16::ZERO;
@@ -98,6 +100,7 @@ const UNFIT: i64 = (1 << 62) - (1 << 31) + 1;
 /// assert_eq!(root::of_square(I32F32::from_num(100_000_000)), I16F16::from_num(10_000));
 /// assert_eq!(root::of_square(-I32F32::ONE), I16F16::ZERO);
 /// ```
+#[doc(alias = "sqrt")]
 #[inline]
 pub const fn of_square(x: I32F32) -> I16F16 {
     if x.to_bits() <= 0 {
@@ -128,6 +131,7 @@ pub const fn checked_of_square(x: I32F32) -> Option<I16F16> {
 /// assert_eq!(root::of_wide(I48F16::from_num(1_000_000)), I16F16::from_num(1000));
 /// assert_eq!(root::of_wide(I48F16::MAX), I16F16::MAX);
 /// ```
+#[doc(alias = "sqrt")]
 #[inline]
 pub const fn of_wide(x: I48F16) -> I16F16 {
     if x.to_bits() <= 0 {
@@ -156,6 +160,7 @@ pub const fn checked_of_wide(x: I48F16) -> Option<I16F16> {
 /// use fixedmath::{root, I16F16};
 /// assert_eq!(root::of_length(I16F16::from_num(2)), I16F16::from_bits(92682));
 /// ```
+#[doc(alias = "sqrt")]
 #[inline]
 pub const fn of_length(x: I16F16) -> I16F16 {
     if x.to_bits() <= 0 {
@@ -186,6 +191,7 @@ pub const fn checked_of_length(x: I16F16) -> Option<I16F16> {
 /// assert_eq!(root::reciprocal_of_length(I16F16::from_num(4)), I16F16::from_num(0.5));
 /// assert_eq!(root::reciprocal_of_length(I16F16::ZERO), I16F16::MAX);
 /// ```
+#[doc(alias("rsqrt", "inverse_sqrt"))]
 #[inline]
 pub const fn reciprocal_of_length(x: I16F16) -> I16F16 {
     if x.to_bits() <= 0 {
@@ -209,6 +215,7 @@ pub const fn checked_reciprocal_of_length(x: I16F16) -> Option<I16F16> {
 /// Square root of 2:30, to the nearest: within 0.5 ulp of 2^-30. A negative argument gives 0.
 ///
 /// Cost: 51 instructions.
+#[doc(alias = "sqrt")]
 #[inline]
 pub const fn of_fraction(x: I2F30) -> I2F30 {
     if x.to_bits() <= 0 {
@@ -243,6 +250,7 @@ pub(crate) const fn of_wide_share(share: u64) -> u32 {
 /// The integer nearest to the square root of `v`; `u32::MAX` where that is 2^32.
 ///
 /// Cost: 51 instructions.
+#[doc(alias("sqrt", "isqrt"))]
 #[inline]
 pub const fn nearest(v: u64) -> u32 {
     if v == 0 {
@@ -272,6 +280,7 @@ pub const fn checked_nearest(v: u64) -> Option<u32> {
 /// The square root of `v`, rounded down.
 ///
 /// Cost: 44 instructions.
+#[doc(alias("sqrt", "isqrt"))]
 #[inline]
 pub const fn floor(v: u64) -> u32 {
     if v == 0 {

@@ -29,6 +29,7 @@ const fn unit_bits(v: [I2F30; 3]) -> [i32; 3] {
 /// assert_eq!(unit::length(v), I16F16::from_num(13));
 /// assert_eq!(unit::length([I16F16::MIN; 3]), I16F16::MAX);
 /// ```
+#[doc(alias("norm", "magnitude"))]
 #[inline]
 pub const fn length(v: [I16F16; 3]) -> I16F16 {
     let root = root::nearest(square(length_bits(v)));
@@ -61,6 +62,7 @@ pub const fn checked_length(v: [I16F16; 3]) -> Option<I16F16> {
 /// assert!((n[0].to_num::<f64>() - 0.5f64.sqrt()).abs() < 3e-9);
 /// assert_eq!(unit::of_vector([I16F16::ZERO; 3]), [I2F30::ZERO; 3]);
 /// ```
+#[doc(alias = "normalize")]
 #[inline]
 pub fn of_vector(v: [I16F16; 3]) -> [I2F30; 3] {
     direction(length_bits(v), square(length_bits(v)))
@@ -86,6 +88,7 @@ pub fn checked_of_vector(v: [I16F16; 3]) -> Option<[I2F30; 3]> {
 /// let n = unit::normalised(v);
 /// assert!((n[0].to_num::<f64>() - 0.6).abs() < 3e-9 && (n[2].to_num::<f64>() + 0.8).abs() < 3e-9);
 /// ```
+#[doc(alias = "normalize")]
 #[inline]
 pub fn normalised(v: [I2F30; 3]) -> [I2F30; 3] {
     direction(unit_bits(v), square(unit_bits(v)))
@@ -145,6 +148,7 @@ const NOTHING_LEFT: u64 = 3 << 60;
 /// a vector gives 0.
 ///
 /// Cost: 18 instructions.
+#[doc(alias = "normalize")]
 #[inline]
 pub fn renormalised(v: [I2F30; 3]) -> [I2F30; 3] {
     let square = square(unit_bits(v));

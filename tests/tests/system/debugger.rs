@@ -49,7 +49,7 @@ fn a_core_that_stood_at_a_breakpoint_gets_its_work_all_the_same() {
     let text = debugged(
         Board::Versatilepb,
         &[
-            "break say",
+            "break node::worker::Worker::send",
             "ignore 2 5",
             "continue",
             "shell sleep 10",
