@@ -1,6 +1,7 @@
 //! The plain list: every primitive is tried.
 
 use core::marker::PhantomData;
+use core::ptr;
 
 use super::Aggregate;
 use crate::arithmetic::Formats;
@@ -57,14 +58,21 @@ impl<P: Profile, F: Needs> Visitor for Closest<'_, P, F> {
         if !F::NEEDS.has(S::CAPABILITY) {
             return;
         }
-        for (index, shape) in (first..).zip(shapes) {
+        // Within a kind, primitives are told apart by where they lie: that is one number less to keep for each.
+        let index = |place: *const S| first + (place.addr() - shapes.as_ptr().addr()) / size_of::<S>();
+        let departed = shapes.as_ptr().wrapping_add(self.departed.wrapping_sub(first));
+        let mut nearest = ptr::null();
+        for shape in shapes {
             let standing = Standing {
-                departs: index == self.departed,
-                two_sided: self.list.is_two_sided::<F>(PrimitiveId::new(index)),
+                departs: ptr::eq(departed, shape),
+                two_sided: self.list.is_two_sided::<F>(PrimitiveId::new(index(shape))),
             };
             if let Some(t) = shape.closest::<P, F>(self.ray, standing, self.epsilon, self.t_max) {
-                (self.t_max, self.nearest) = (t, index);
+                (self.t_max, nearest) = (t, ptr::from_ref(shape));
             }
+        }
+        if !nearest.is_null() {
+            self.nearest = index(nearest);
         }
     }
 }
