@@ -4,7 +4,7 @@ use bytemuck::{Pod, Zeroable};
 use fixedmath::{I2F30, I16F16, U19F45, division, product};
 
 use crate::arithmetic::{Mixed, Numbers, Published, Sampling};
-use crate::geometry::{PrimitiveSet, Ray};
+use crate::geometry::{PrimitiveId, PrimitiveSet, Ray};
 use crate::random::Random;
 use crate::scene::{Capabilities, Capability};
 
@@ -98,7 +98,8 @@ impl<N: Numbers> Camera<N> {
         Ray {
             origin,
             direction,
-            departure: None,
+            departed: PrimitiveId::NONE,
+            normal: direction,
         }
     }
 }

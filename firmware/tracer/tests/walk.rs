@@ -9,7 +9,7 @@ use tracer::arithmetic::{Directions, Formats, Mixed, Published, Sampling};
 use tracer::camera::Camera;
 use tracer::geometry::sphere::SphereRecord;
 use tracer::geometry::vector::reflected;
-use tracer::geometry::{Departure, Interaction, PrimitiveId, Ray};
+use tracer::geometry::{Interaction, PrimitiveId, Ray};
 use tracer::integrator::{Integrator, Path};
 use tracer::material::{DielectricNumbers, HemisphereSampling, Kind, MalleyDisc, TangentSphere};
 use tracer::profile::{Paper, Precise, Profile, Quadratic};
@@ -103,10 +103,8 @@ fn from(surface: &Interaction<Mixed>, direction: [I2F30; 3]) -> Ray<Mixed> {
     Ray {
         origin: surface.point,
         direction,
-        departure: Some(Departure {
-            primitive: surface.primitive,
-            normal: surface.normal,
-        }),
+        departed: surface.primitive,
+        normal: surface.normal,
     }
 }
 
@@ -139,7 +137,8 @@ fn a_ray_never_meets_at_once_the_surface_it_leaves() {
         let mut ray = Ray::<Mixed> {
             origin: [I16F16::ZERO; 3],
             direction: Mixed::bisector(Mixed::normalised(aim, jitter), jitter, jitter),
-            departure: None,
+            departed: PrimitiveId::NONE,
+            normal: Z,
         };
         for _ in 0..4 {
             let Some(surface) = nearest::<Precise>(&scene, &ray) else {
@@ -201,10 +200,8 @@ fn light_within_a_glass_ball_keeps_its_angle() {
             let mut ray = Ray::<Mixed> {
                 origin: [0, 1, 2].map(|i| Mixed::scale(I16F16::from_num(radius), normal[i])),
                 direction: GLASS.direction::<Mixed, _>(inwards, normal, &mut random),
-                departure: Some(Departure {
-                    primitive: ball,
-                    normal,
-                }),
+                departed: ball,
+                normal,
             };
             let first = Mixed::cosine(ray.direction, normal).to_num::<f64>();
             if first > 0.0 {
@@ -267,7 +264,8 @@ fn both_formulas_find_the_same_hits() {
         let ray = Ray::<Mixed> {
             origin: [I16F16::ZERO; 3],
             direction: TangentSphere::direction::<Mixed, _>(Z, &mut random),
-            departure: None,
+            departed: PrimitiveId::NONE,
+            normal: Z,
         };
         let ours = nearest::<Precise>(&scene, &ray).unwrap();
         let theirs = nearest::<TextbookPrecise>(&scene, &ray).unwrap();
@@ -291,7 +289,8 @@ fn nothing_has_no_surface_and_no_bounds() {
     let ray = Ray::<Mixed> {
         origin: [I16F16::ZERO; 3],
         direction: Z,
-        departure: None,
+        departed: PrimitiveId::NONE,
+        normal: Z,
     };
     assert!(
         scene

@@ -43,14 +43,10 @@ struct Closest<'a, P: Profile, F> {
     ray: &'a Ray<P::Numbers>,
     epsilon: Length<P>,
     t_max: Length<P>,
-    /// Index of the primitive that the ray leaves, and of the nearest one; [`NONE`] is none.
-    departed: usize,
-    nearest: usize,
+    /// That of the nearest surface.
+    nearest: PrimitiveId,
     needs: PhantomData<F>,
 }
-
-/// No primitive's index. An `Option` would be asked for its variant at every primitive.
-const NONE: usize = usize::MAX;
 
 impl<P: Profile, F: Needs> Visitor for Closest<'_, P, F> {
     #[inline]
@@ -60,7 +56,9 @@ impl<P: Profile, F: Needs> Visitor for Closest<'_, P, F> {
         }
         // Within a kind, primitives are told apart by where they lie: that is one number less to keep for each.
         let index = |place: *const S| first + (place.addr() - shapes.as_ptr().addr()) / size_of::<S>();
-        let departed = shapes.as_ptr().wrapping_add(self.departed.wrapping_sub(first));
+        let departed = shapes
+            .as_ptr()
+            .wrapping_add(self.ray.departed.index().wrapping_sub(first));
         let mut nearest = ptr::null();
         for shape in shapes {
             let standing = Standing {
@@ -72,7 +70,7 @@ impl<P: Profile, F: Needs> Visitor for Closest<'_, P, F> {
             }
         }
         if !nearest.is_null() {
-            self.nearest = index(nearest);
+            self.nearest = PrimitiveId::new(index(nearest));
         }
     }
 }
@@ -125,16 +123,13 @@ impl Aggregate for Linear<'_> {
             ray,
             epsilon,
             t_max: P::Numbers::FAR,
-            departed: ray
-                .departure
-                .map_or(NONE, |departure| departure.primitive.index()),
-            nearest: NONE,
+            nearest: PrimitiveId::NONE,
             needs: PhantomData,
         };
         self.primitives.visit(&mut closest);
-        (closest.nearest != NONE).then(|| Hit {
+        (closest.nearest != PrimitiveId::NONE).then_some(Hit {
             t: closest.t_max,
-            primitive: PrimitiveId::new(closest.nearest),
+            primitive: closest.nearest,
         })
     }
 

@@ -12,7 +12,7 @@ pub mod vector;
 
 pub use bounds::Bounds;
 pub use primitives::{OnShape, PrimitiveId, PrimitiveSet, Visitor};
-pub use ray::{Departure, Ray};
+pub use ray::Ray;
 
 use bytemuck::Pod;
 

@@ -7,6 +7,9 @@ use super::Shape;
 pub struct PrimitiveId(u32);
 
 impl PrimitiveId {
+    /// The number of no primitive. (An `Option` would be asked for its variant at each primitive that a ray may meet.)
+    pub const NONE: Self = Self(u32::MAX);
+
     /// The primitive at `index`, from 0.
     #[inline]
     pub const fn new(index: usize) -> Self {

@@ -5,7 +5,7 @@ use core::marker::PhantomData;
 use super::{Integrator, Sample, Termination};
 use crate::aggregate::Aggregate;
 use crate::arithmetic::{Formats, Sampling};
-use crate::geometry::{Departure, Ray};
+use crate::geometry::Ray;
 use crate::material::{MaterialRecord, RadianceNumbers};
 use crate::profile::Profile;
 use crate::random::Random;
@@ -79,10 +79,8 @@ impl<P: Profile, F: Needs> Integrator<P> for Path<P, F> {
             ray = Ray {
                 origin: interaction.point,
                 direction,
-                departure: Some(Departure {
-                    primitive: interaction.primitive,
-                    normal: interaction.normal,
-                }),
+                departed: interaction.primitive,
+                normal: interaction.normal,
             };
         }
         Sample { radiance, rays }

@@ -127,12 +127,11 @@ impl SphereRecord {
                 )
             }
             Quadratic::Power => {
-                let normal = match &ray.departure {
-                    Some(departure) if crosses => reflected::<P::Numbers>(departure.normal, ray.direction),
-                    _ => {
-                        let from_centre = [0, 1, 2].map(|i| ray.origin[i] - centre[i] + along(i));
-                        P::Numbers::normal(from_centre, self.radius, self.reciprocal())
-                    }
+                let normal = if crosses {
+                    reflected::<P::Numbers>(ray.normal, ray.direction)
+                } else {
+                    let from_centre = [0, 1, 2].map(|i| ray.origin[i] - centre[i] + along(i));
+                    P::Numbers::normal(from_centre, self.radius, self.reciprocal())
                 };
                 let radius = P::Numbers::length(self.radius);
                 let point = [0, 1, 2].map(|i| centre[i] + P::Numbers::scale(radius, normal[i]));
