@@ -38,7 +38,7 @@ impl Shape for HollowSphere {
         if matches!(P::QUADRATIC, Quadratic::Textbook) {
             return self.0.textbook::<P>(ray, epsilon, t_max);
         }
-        let to_centre = self.0.to_centre::<P>(ray);
+        let to_centre = self.0.centre_from::<P>(ray);
         let b = P::Numbers::length_of(P::Numbers::project(to_centre, ray.direction));
         if standing.departs {
             return chord::<P>(b, epsilon, t_max);

@@ -77,7 +77,7 @@ impl SphereRecord {
     }
 
     #[inline]
-    fn to_centre<P: Profile>(&self, ray: &Ray<P::Numbers>) -> [Length<P>; 3] {
+    fn centre_from<P: Profile>(&self, ray: &Ray<P::Numbers>) -> [Length<P>; 3] {
         sub(self.centre.map(P::Numbers::length), ray.origin)
     }
 
@@ -89,7 +89,7 @@ impl SphereRecord {
         epsilon: Length<P>,
         t_max: Length<P>,
     ) -> Option<Length<P>> {
-        let to_centre = self.to_centre::<P>(ray);
+        let to_centre = self.centre_from::<P>(ray);
         let b = P::Numbers::project(to_centre, ray.direction);
         let discriminant =
             P::Numbers::squared(b) - P::Numbers::dot(to_centre, to_centre) + P::Numbers::square(self.square);

@@ -39,7 +39,7 @@ impl Shape for SolidSphere {
         if matches!(P::QUADRATIC, Quadratic::Textbook) {
             return self.0.textbook::<P>(ray, epsilon, t_max);
         }
-        let to_centre = self.0.to_centre::<P>(ray);
+        let to_centre = self.0.centre_from::<P>(ray);
         let projection = P::Numbers::project(to_centre, ray.direction);
         let b = P::Numbers::length_of(projection);
         let has_inside = self.0.has_inside::<F>() || standing.two_sided;
