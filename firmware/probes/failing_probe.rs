@@ -6,7 +6,6 @@
 use board::Core;
 use node::ethernet::Ethernet;
 use node::{Network, SendError, Words};
-use runtime::image::{ImageIntegrator, ImageProfile};
 use runtime::{Board, Exit, die, memory};
 use wire::{Boot, FromCore, Message, Name};
 
@@ -22,12 +21,12 @@ fn start() -> ! {
     let Some(mut controller) = Core::controller(boot.mac()) else {
         die::<Core>(&Words::of(Core::NO_CONTROLLER), Exit::Fault)
     };
-    let network = Failing {
+    let mut network = Failing {
         network: Ethernet::new(&boot, &mut controller),
         good_units: if boot.core == 0 { GOOD_UNITS } else { u32::MAX },
     };
     let name = Name::new(Core::NAME);
-    match node::run::<ImageProfile, ImageIntegrator>(&boot, name, network, Core::clock(), memory::stack_use) {
+    match runtime::work(&boot, name, &mut network, &mut Core::clock()) {
         Ok(_) => Core::exit(Exit::Done),
         Err(fault) => die::<Core>(&Words::of(fault.as_str()), Exit::Fault),
     }

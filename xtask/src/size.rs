@@ -36,6 +36,9 @@ pub(crate) struct Row {
     profile: &'static str,
     #[serde(flatten)]
     size: ImageSize,
+    /// Code memory that the tracer takes, with its arithmetic, and the frame around it.
+    tracer_bytes: u64,
+    frame_bytes: u64,
 }
 
 impl Row {
@@ -77,10 +80,13 @@ pub(crate) fn measure(toolchain: &Toolchain, scene: &Scene) -> anyhow::Result<Ve
                 log: None,
             },
         )?;
+        let tracer_bytes = firmware::tracer_bytes(&image.elf)?;
         let row = Row {
             board: board.name(),
             scene: scene.name.clone(),
             profile: profile.name(),
+            tracer_bytes,
+            frame_bytes: image.size.itcm_bytes - tracer_bytes,
             size: image.size.with_boot_block(boot_block),
         };
         ensure!(
@@ -99,20 +105,23 @@ pub(crate) fn measure(toolchain: &Toolchain, scene: &Scene) -> anyhow::Result<Ve
 /// The rows for people.
 pub(crate) fn table(rows: &[Row]) -> String {
     let mut lines = vec![format!(
-        "{:12} {:10} {:8} {:>14} {:>22}",
-        "board", "scene", "profile", "code memory", "data memory (stacks)"
+        "{:12} {:10} {:8} {:>32} {:>22}",
+        "board", "scene", "profile", "code memory (tracer + frame)", "data memory (stacks)"
     )];
     lines.extend(rows.iter().map(|row| {
         let stack = row.size.stack_bytes;
         format!(
-            "{:12} {:10} {:8} {:>14} {:>22}",
+            "{:12} {:10} {:8} {:>32} {:>22}",
             row.board,
             row.scene,
             row.profile,
-            row.size.itcm_bytes,
+            format!(
+                "{} ({} + {})",
+                row.size.itcm_bytes, row.tracer_bytes, row.frame_bytes
+            ),
             format!("{} ({stack})", row.data())
         )
     }));
-    lines.push(format!("{:32} {ITCM_BUDGET:>14} {DTCM_BUDGET:>22}", "budget"));
+    lines.push(format!("{:32} {ITCM_BUDGET:>32} {DTCM_BUDGET:>22}", "budget"));
     lines.join("\n")
 }

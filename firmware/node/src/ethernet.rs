@@ -4,17 +4,19 @@
 //! heard from, and to everybody until it has been heard. `announce` makes the network know this core, and ARP requests for its
 //! address are answered.
 //!
-//! Formats are `smoltcp::wire`'s. Every length that came from outside is checked there (`new_checked`, `parse`) before a byte
-//! behind it is touched; a frame that fails a check is dropped, and counted if it claimed to be UDP for this core.
+//! Formats are `smoltcp::wire`'s. Every length that came from outside is checked (`new_checked`, `get`) before a byte behind it is
+//! touched; a frame that fails a check is dropped, and counted if it claimed to be UDP for this core.
+
+use core::num::NonZeroU16;
 
 use smoltcp::phy::ChecksumCapabilities;
 use smoltcp::wire::{
     ArpOperation, ArpPacket, ArpRepr, EthernetAddress, EthernetFrame, EthernetProtocol, EthernetRepr,
-    IpProtocol, Ipv4Address, Ipv4Packet, Ipv4Repr, UdpPacket, UdpRepr,
+    IpProtocol, Ipv4Address, Ipv4Packet, Ipv4Repr, UdpPacket,
 };
 use wire::{Boot, MAX_PAYLOAD};
 
-use crate::{Network, SendError, log};
+use crate::{Network, SendError, checksum, log};
 
 const ETHERNET_LEN: usize = 14;
 const ARP_LEN: usize = 28;
@@ -124,9 +126,13 @@ impl<'a> Ethernet<'a> {
     }
 
     fn handle_arp(&mut self, packet: &[u8]) {
-        let Ok(packet) = ArpPacket::new_checked(packet) else {
+        // Lengths that the compiler knows need no code that checks them.
+        let Some(packet) = packet.first_chunk::<ARP_LEN>().map(ArpPacket::new_unchecked) else {
             return;
         };
+        if packet.hardware_len() != 6 || packet.protocol_len() != 4 {
+            return;
+        }
         let Ok(ArpRepr::EthernetIpv4 {
             operation,
             source_hardware_addr,
@@ -149,20 +155,17 @@ impl<'a> Ethernet<'a> {
         }
     }
 
-    fn handle_ipv4<'f>(&mut self, from: EthernetAddress, packet: &'f [u8]) -> Option<&'f [u8]> {
-        let packet = Ipv4Packet::new_checked(packet).ok()?;
+    fn handle_ipv4<'f>(&mut self, from: EthernetAddress, bytes: &'f [u8]) -> Option<&'f [u8]> {
+        let packet = Ipv4Packet::new_checked(bytes).ok()?;
         if packet.dst_addr() != self.address || packet.next_header() != IpProtocol::Udp {
             return None;
         }
-        let Some((source, payload)) = udp_payload(&packet, self.port) else {
+        let Some(payload) = udp_payload(&packet, bytes, self.port) else {
             self.refused = self.refused.wrapping_add(1);
-            log::warn!(
-                "datagram of {=usize} bytes dropped: malformed",
-                packet.payload().len()
-            );
+            log::warn!("datagram of {=usize} bytes dropped: malformed", bytes.len());
             return None;
         };
-        self.learn(source, from);
+        self.learn(packet.src_addr(), from);
         Some(payload)
     }
 
@@ -174,13 +177,27 @@ impl<'a> Ethernet<'a> {
     }
 }
 
-/// The source and the payload of a datagram for `port` whose checksums are right.
-fn udp_payload<'f>(packet: &Ipv4Packet<&'f [u8]>, port: u16) -> Option<(Ipv4Address, &'f [u8])> {
-    let checksums = ChecksumCapabilities::default();
-    let ip = Ipv4Repr::parse(packet, &checksums).ok()?;
-    let datagram = UdpPacket::new_checked(packet.payload()).ok()?;
-    let udp = UdpRepr::parse(&datagram, &ip.src_addr.into(), &ip.dst_addr.into(), &checksums).ok()?;
-    (udp.dst_port == port).then(|| (ip.src_addr, datagram.payload()))
+/// The payload of a datagram for `port`, whole and with right checksums, in a packet of these bytes.
+fn udp_payload<'f>(packet: &Ipv4Packet<&[u8]>, bytes: &'f [u8], port: u16) -> Option<&'f [u8]> {
+    let header = bytes.get(..packet.header_len().into())?;
+    let fragmented = packet.more_frags() || packet.frag_offset() != 0;
+    if packet.version() != 4 || fragmented || checksum::of(checksum::sum(header)) != 0 {
+        return None;
+    }
+    let datagram = bytes.get(header.len()..packet.total_len().into())?;
+    let udp = UdpPacket::new_unchecked(datagram.first_chunk::<UDP_LEN>()?);
+    let datagram = datagram.get(..udp.len().into())?;
+    let payload = datagram.get(UDP_LEN..)?;
+    let sum = pseudo_header(packet.src_addr(), packet.dst_addr(), datagram.len()) + checksum::sum(datagram);
+    // A checksum of zero is none.
+    let sound = udp.checksum() == 0 || checksum::of(sum) == 0;
+    (sound && udp.dst_port() == port).then_some(payload)
+}
+
+/// The sum of what UDP's checksum covers besides the datagram.
+fn pseudo_header(source: Ipv4Address, destination: Ipv4Address, len: usize) -> u32 {
+    let addresses = checksum::sum(&source.octets()) + checksum::sum(&destination.octets());
+    addresses + u32::from(u8::from(IpProtocol::Udp)) + len as u32
 }
 
 impl Network for Ethernet<'_> {
@@ -196,23 +213,30 @@ impl Network for Ethernet<'_> {
             payload_len: UDP_LEN + payload.len(),
             hop_limit: HOP_LIMIT,
         };
-        let checksums = ChecksumCapabilities::default();
+        let (_, packet) = frame.split_at_mut(ETHERNET_LEN);
+        let (header, datagram) = packet.split_at_mut_checked(IPV4_LEN).ok_or(SendError)?;
         ip.emit(
-            &mut Ipv4Packet::new_unchecked(&mut frame[ETHERNET_LEN..]),
-            &checksums,
+            &mut Ipv4Packet::new_unchecked(&mut *header),
+            &ChecksumCapabilities::ignored(),
         );
-        UdpRepr {
-            src_port: self.port,
-            dst_port: self.port,
-        }
-        .emit(
-            &mut UdpPacket::new_unchecked(&mut frame[ETHERNET_LEN + IPV4_LEN..]),
-            &ip.src_addr.into(),
-            &ip.dst_addr.into(),
-            payload.len(),
-            |room| room.copy_from_slice(payload),
-            &checksums,
-        );
+        Ipv4Packet::new_unchecked(&mut *header).set_checksum(0);
+        let sum = checksum::sum(header);
+        Ipv4Packet::new_unchecked(header).set_checksum(checksum::of(sum));
+
+        let len = datagram.len();
+        datagram
+            .get_mut(UDP_LEN..)
+            .ok_or(SendError)?
+            .copy_from_slice(payload);
+        let mut udp = UdpPacket::new_unchecked(&mut *datagram);
+        udp.set_src_port(self.port);
+        udp.set_dst_port(self.port);
+        udp.set_len(len as u16);
+        udp.set_checksum(0);
+        let sum = pseudo_header(self.address, self.collector, len) + checksum::sum(datagram);
+        // Zero would say that there is none; it is one of two spellings of the same number.
+        let checksum = NonZeroU16::new(checksum::of(sum)).unwrap_or(NonZeroU16::MAX);
+        UdpPacket::new_unchecked(datagram).set_checksum(checksum.get());
         self.frames.transmit(frame)
     }
 
@@ -222,7 +246,8 @@ impl Network for Ethernet<'_> {
             let len = self.frames.receive(&mut frame)?;
             if let Some(payload) = self.handle(frame.get(..len)?) {
                 let len = payload.len().min(buffer.len());
-                buffer[..len].copy_from_slice(&payload[..len]);
+                let (room, payload) = (buffer.get_mut(..len)?, payload.get(..len)?);
+                room.copy_from_slice(payload);
                 return Some(len);
             }
         }

@@ -1,6 +1,6 @@
 //! The units a core has been told to render.
 
-use heapless::{Deque, HistoryBuf};
+use heapless::Deque;
 
 use crate::log;
 
@@ -21,7 +21,8 @@ struct Lease {
 #[derive(Debug, Default)]
 pub(crate) struct Leases {
     queue: Deque<Lease, LEASES>,
-    seen: HistoryBuf<u16, REMEMBERED>,
+    /// The last of their numbers, oldest first.
+    seen: Deque<u16, REMEMBERED>,
 }
 
 /// No room for another lease.
@@ -31,14 +32,18 @@ pub(crate) struct Full;
 impl Leases {
     /// Takes a lease. A duplicate is nothing new, and so no error; a lease that was refused is not remembered.
     pub(crate) fn take(&mut self, number: u16, first: u32, last: u32) -> Result<(), Full> {
-        if self.seen.as_slice().contains(&number) {
+        if self.seen.iter().any(|&seen| seen == number) {
             log::debug!("lease {=u16} is here already", number);
             return Ok(());
         }
         self.queue
             .push_back(Lease { next: first, last })
             .map_err(|_| Full)?;
-        self.seen.write(number);
+        if self.seen.is_full() {
+            self.seen.pop_front();
+        }
+        // There is room for it.
+        let _ = self.seen.push_back(number);
         log::debug!("lease {=u16}: units {=u32} to {=u32}", number, first, last);
         Ok(())
     }

@@ -20,6 +20,7 @@
 #![no_std]
 #![forbid(unsafe_code)]
 
+mod checksum;
 pub mod ethernet;
 mod fault;
 mod leases;
@@ -86,8 +87,8 @@ impl core::error::Error for SendError {}
 pub fn run<P: Profile, I: Integrator<P>>(
     boot: &Boot<'_>,
     board: Name,
-    mut network: impl Network,
-    mut clock: impl Clock,
+    network: &mut dyn Network,
+    clock: &mut dyn Clock,
     stack: fn() -> StackUse,
 ) -> Result<Outcome, Fault> {
     if boot.profile != Name::new(P::NAME) {
@@ -99,7 +100,7 @@ pub fn run<P: Profile, I: Integrator<P>>(
     let (camera, integrator) = (Camera::new(record), I::new(&plan));
     let mut renderer =
         |unit, sums: &mut Sums| tracer::unit::render::<P>(&integrator, &scene, &camera, &plan, unit, sums);
-    Worker::new(boot, plan, board, &mut renderer, &mut network, &mut clock)?.run(stack)
+    Worker::new(boot, plan, board, &mut renderer, network, clock)?.run(stack)
 }
 
 /// Tells the host why this core ends, and at which instruction where that is known. Tries once: who sends this has little left to
@@ -120,7 +121,7 @@ pub fn last_words(
         message,
     }
     .encode(&mut packet);
-    network.send(&packet[..len])
+    network.send(packet.get(..len).unwrap_or_default())
 }
 
 /// What the tracer has to know of the boot block.

@@ -54,13 +54,26 @@ impl UnitSource {
 
 /// core * units / cores, for 16-bit core numbers, without the 64-bit division that a core has no instruction for.
 fn share_start(units: u32, core: u32, cores: u32) -> u32 {
-    units / cores * core + units % cores * core / cores
+    let each = quotient(units, cores);
+    each * core + quotient((units - each * cores) * core, cores)
 }
 
 /// The greatest unit id of the last whole pass that fits 32 bits: runs * floor(2^32 / runs) - 1, likewise.
 fn last_whole_pass(runs: u32) -> u32 {
-    let left_over = (u32::MAX % runs + 1) % runs;
-    u32::MAX - left_over
+    let whole = quotient(u32::MAX, runs) * runs;
+    // Another pass ends past the last id, or with it.
+    if whole.wrapping_add(runs) == 0 {
+        u32::MAX
+    } else {
+        whole - 1
+    }
+}
+
+/// Never inlined: where the compiler sees that a remainder is wanted, too, it takes another routine of its library, beside the one
+/// that is needed anyway.
+#[inline(never)]
+fn quotient(dividend: u32, divisor: u32) -> u32 {
+    dividend / divisor
 }
 
 /// Steele, Lea and Flood's SplitMix64, of which the upper half is used. It chooses units only: what a unit looks like depends on

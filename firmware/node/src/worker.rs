@@ -278,8 +278,9 @@ impl<'a> Worker<'a> {
             message,
         }
         .encode(&mut packet);
+        let packet = packet.get(..len).unwrap_or_default();
         for failed in 0..SEND_TRIES {
-            if self.network.send(&packet[..len]).is_ok() {
+            if self.network.send(packet).is_ok() {
                 log::trace!("packet {=u16} of {=usize} bytes sent", seq, len);
                 return Ok(());
             }

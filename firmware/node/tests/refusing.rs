@@ -68,8 +68,8 @@ fn refused(boot: &Boot<'_>) -> Fault {
     let outcome = node::run::<Precise, Path<Precise, All>>(
         boot,
         Name::new("fake"),
-        &mut mailbox,
-        Stopped,
+        &mut &mut mailbox,
+        &mut Stopped,
         StackUse::default,
     );
     assert!(mailbox.sent.is_empty(), "a core that cannot work asks for none");

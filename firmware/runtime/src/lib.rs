@@ -24,7 +24,7 @@ pub use fault::{die, exception, panicked};
 
 use image::{ImageIntegrator, ImageProfile};
 use node::ethernet::{Ethernet, Frames};
-use node::{Clock, Words};
+use node::{Clock, Network, Outcome, Words};
 #[cfg(feature = "log")]
 use tracer::profile::Profile;
 use wire::{Boot, Name};
@@ -88,6 +88,17 @@ impl Exit {
     }
 }
 
+/// Works until told to stop. The tracer is compiled into this function, once, whatever board and image call it.
+#[inline(never)]
+pub fn work(
+    boot: &Boot<'_>,
+    board: Name,
+    network: &mut dyn Network,
+    clock: &mut dyn Clock,
+) -> Result<Outcome, node::Fault> {
+    node::run::<ImageProfile, ImageIntegrator>(boot, board, network, clock, memory::stack_use)
+}
+
 /// One core's whole life: reads its boot block, works until told to stop, exits with a code. To be called first and once.
 pub fn run<B: Board>() -> ! {
     memory::paint_stack();
@@ -104,7 +115,7 @@ pub fn run<B: Board>() -> ! {
     #[cfg(feature = "log")]
     defmt::info!("{=str} with profile {=str}", B::NAME, ImageProfile::NAME);
     let name = const { Name::new(B::NAME) };
-    match node::run::<ImageProfile, ImageIntegrator>(&boot, name, network, B::clock(), memory::stack_use) {
+    match work(&boot, name, &mut network, &mut B::clock()) {
         Ok(outcome) if outcome.stack.used >= outcome.stack.size => die::<B>(
             &Words::of("the stack ran over: enlarge it in memory.x"),
             Exit::Fault,

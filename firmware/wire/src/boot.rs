@@ -247,7 +247,9 @@ impl<'a> Boot<'a> {
         let scene = rest
             .get(..fields.scene_length.into())
             .ok_or(DecodeError::Truncated)?;
-        let (camera, padding) = camera.split_at(camera_len);
+        let (camera, padding) = camera
+            .split_at_checked(camera_len)
+            .ok_or(DecodeError::Truncated)?;
         if padding.iter().any(|&byte| byte != 0) {
             return Err(DecodeError::Padding);
         }

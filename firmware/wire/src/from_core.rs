@@ -308,7 +308,8 @@ impl<'a> FaultInfo<'a> {
         .write(out);
         // As many whole characters as there is room for.
         let end = self.reason.floor_char_boundary(MAX_REASON);
-        append(out, FaultBody::END, &self.reason.as_bytes()[..end])
+        let reason = self.reason.get(..end).unwrap_or(self.reason);
+        append(out, FaultBody::END, reason.as_bytes())
     }
 
     fn decode(payload: &'a [u8]) -> Result<Self, DecodeError> {
@@ -323,11 +324,13 @@ impl<'a> FaultInfo<'a> {
     }
 }
 
-/// Puts the last part of a message, for which there is room, at `at`, and says where it ends.
+/// Puts the last part of a message at `at`, cut where there is no room for more, and says where it ends.
 fn append(out: &mut [u8; MAX_PAYLOAD], at: usize, part: &[u8]) -> usize {
-    let end = at + part.len();
-    out[at..end].copy_from_slice(part);
-    end
+    let room = out.iter_mut().skip(at).zip(part);
+    room.fold(at, |end, (to, &byte)| {
+        *to = byte;
+        end + 1
+    })
 }
 
 #[cfg(test)]

@@ -9,45 +9,55 @@ pub(crate) trait Field: Sized {
     const LEN: usize;
 
     /// The field that begins at `at`.
-    fn read(bytes: &[u8], at: usize) -> Self;
+    fn read<const N: usize>(message: &[u8; N], at: usize) -> Self;
 
     /// Puts the field there.
-    fn write(self, bytes: &mut [u8], at: usize);
+    fn write<const N: usize>(self, message: &mut [u8; N], at: usize);
 }
 
+impl<const LEN: usize> Field for [u8; LEN] {
+    const LEN: usize = LEN;
+
+    #[inline(always)]
+    fn read<const N: usize>(message: &[u8; N], at: usize) -> Self {
+        core::array::from_fn(|index| message[at + index])
+    }
+
+    #[inline(always)]
+    fn write<const N: usize>(self, message: &mut [u8; N], at: usize) {
+        message[at..at + LEN].copy_from_slice(&self);
+    }
+}
+
+/// Numbers are taken apart and put together by one small function a width: a core that can only load aligned words takes many
+/// instructions for each, and a message has many.
 macro_rules! numbers {
-    ($($number:ty)*) => {$(
+    ($($number:ident)*) => {$(
         impl Field for $number {
             const LEN: usize = size_of::<Self>();
 
             #[inline(always)]
-            fn read(bytes: &[u8], at: usize) -> Self {
-                Self::from_le_bytes(Field::read(bytes, at))
+            fn read<const N: usize>(message: &[u8; N], at: usize) -> Self {
+                #[inline(never)]
+                fn get(bytes: &[u8; size_of::<$number>()]) -> $number {
+                    $number::from_le_bytes(*bytes)
+                }
+                get(message[at..].first_chunk().expect("a layout ends within its message"))
             }
 
             #[inline(always)]
-            fn write(self, bytes: &mut [u8], at: usize) {
-                self.to_le_bytes().write(bytes, at);
+            fn write<const N: usize>(self, message: &mut [u8; N], at: usize) {
+                #[inline(never)]
+                fn put(number: $number, bytes: &mut [u8; size_of::<$number>()]) {
+                    *bytes = number.to_le_bytes();
+                }
+                put(self, message[at..].first_chunk_mut().expect("a layout ends within its message"));
             }
         }
     )*};
 }
 
 numbers!(u8 u16 u32 u64 i32);
-
-impl<const N: usize> Field for [u8; N] {
-    const LEN: usize = N;
-
-    #[inline(always)]
-    fn read(bytes: &[u8], at: usize) -> Self {
-        core::array::from_fn(|index| bytes[at + index])
-    }
-
-    #[inline(always)]
-    fn write(self, bytes: &mut [u8], at: usize) {
-        bytes[at..at + N].copy_from_slice(&self);
-    }
-}
 
 /// A field's name, offset and length.
 pub(crate) type Place = (&'static str, usize, usize);
@@ -59,20 +69,11 @@ pub(crate) trait Layout: Sized {
     /// Where the last one ends.
     const END: usize;
 
-    /// Takes them out of a message, of which there must be [`END`](Layout::END) bytes.
-    fn read(message: &[u8]) -> Self;
-
-    /// Puts them into a message that has room for them.
-    fn write(self, message: &mut [u8]);
-
     /// The fields of a message, and what follows them.
-    #[inline(always)] // a constant length needs no code to see that no field is out of bounds
-    fn split(message: &[u8]) -> Result<(Self, &[u8]), DecodeError> {
-        let (fields, rest) = message
-            .split_at_checked(Self::END)
-            .ok_or(DecodeError::Truncated)?;
-        Ok((Self::read(fields), rest))
-    }
+    fn split(message: &[u8]) -> Result<(Self, &[u8]), DecodeError>;
+
+    /// Puts them into a message.
+    fn write<const N: usize>(self, message: &mut [u8; N]);
 
     /// The fields of a message that ends with them.
     #[inline(always)]
@@ -115,13 +116,19 @@ macro_rules! layout {
                 &[$((stringify!($field), $at, <$kind as $crate::layout::Field>::LEN),)+];
             const END: usize = $end;
 
+            // The length is a constant: a core needs no code to see that no field is out of bounds.
             #[inline(always)]
-            fn read(message: &[u8]) -> Self {
-                Self { $($field: $crate::layout::Field::read(message, $at),)+ }
+            fn split(message: &[u8]) -> Result<(Self, &[u8]), $crate::DecodeError> {
+                let (front, rest) = message
+                    .split_first_chunk::<$end>()
+                    .ok_or($crate::DecodeError::Truncated)?;
+                let fields = Self { $($field: $crate::layout::Field::read(front, $at),)+ };
+                Ok((fields, rest))
             }
 
             #[inline(always)]
-            fn write(self, message: &mut [u8]) {
+            fn write<const N: usize>(self, message: &mut [u8; N]) {
+                const { assert!($end <= N, "the layout ends within the message") };
                 $($crate::layout::Field::write(self.$field, message, $at);)+
             }
         }

@@ -94,7 +94,8 @@ impl PixelSums {
     }
 
     pub(crate) fn bytes(&self) -> &[u8] {
-        &self.packed[..usize::from(self.pixels) * PIXEL_LEN]
+        let len = usize::from(self.pixels) * PIXEL_LEN;
+        self.packed.get(..len).unwrap_or(&self.packed)
     }
 
     pub(crate) fn from_bytes(bytes: &[u8]) -> Result<Self, DecodeError> {

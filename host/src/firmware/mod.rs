@@ -5,6 +5,7 @@
 //! builds are not kept waiting; the finished image is then put beside it under a name that says what it is.
 
 mod elf;
+mod share;
 
 use std::env;
 use std::ffi::OsString;
@@ -23,6 +24,7 @@ use crate::setup::Toolchain;
 use crate::workspace::{self, NoWorkspace};
 
 pub use elf::{ImageSize, board_of, entry, measure};
+pub use share::tracer_bytes;
 
 /// What an image is to be built for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -145,9 +145,9 @@ fn run(block: &[u8], profile: Arithmetic, end: Arc<End>) -> Result<Outcome, Stri
     outcome.map_err(|fault| fault.to_string())
 }
 
-fn work<P: Profile>(boot: &Boot<'_>, network: Loopback, clock: HostClock) -> Result<Outcome, Fault> {
+fn work<P: Profile>(boot: &Boot<'_>, mut network: Loopback, mut clock: HostClock) -> Result<Outcome, Fault> {
     let board = const { Name::new("native") };
-    node::run::<P, Path<P, All>>(boot, board, network, clock, StackUse::default)
+    node::run::<P, Path<P, All>>(boot, board, &mut network, &mut clock, StackUse::default)
 }
 
 /// A core's way to the collector: a socket of this host.

@@ -30,6 +30,12 @@ fn recipe(profile: Arithmetic, needs: Capabilities) -> Recipe {
     }
 }
 
+/// Every board with every profile.
+fn both() -> impl Iterator<Item = (Board, Arithmetic)> {
+    let boards = Board::ALL.into_iter();
+    boards.flat_map(|board| Arithmetic::ALL.map(|profile| (board, profile)))
+}
+
 /// Builds one of a board's examples, and says where its ELF is.
 fn example(board: Board, name: &str) -> (Output, PathBuf) {
     let mut command = firmware::cargo(
@@ -149,10 +155,7 @@ fn a_panic_and_a_fault_say_what_and_where_and_end_the_core() {
 #[test]
 fn every_image_fits_and_holds_no_more_than_its_scene_needs() {
     let toolchain = toolchain();
-    let cases = Board::ALL
-        .into_iter()
-        .flat_map(|board| Arithmetic::ALL.map(|profile| (board, profile)));
-    for (board, profile) in cases {
+    for (board, profile) in both() {
         let full = build(&toolchain, board, &recipe(profile, Capabilities::ALL))
             .unwrap()
             .size;
@@ -171,6 +174,24 @@ fn every_image_fits_and_holds_no_more_than_its_scene_needs() {
             plain.itcm_bytes + 500 < full.itcm_bytes,
             "a mirror and a dielectric are code"
         );
+    }
+}
+
+/// What is not the tracer's must leave 17 KiB to what a scene needs.
+#[test]
+fn the_frame_around_the_tracer_is_small() {
+    const BUDGET: u64 = 15 * 1024;
+    for (board, profile) in both() {
+        let image = build(&toolchain(), board, &recipe(profile, CORNELL)).unwrap();
+        let tracer = firmware::tracer_bytes(&image.elf).unwrap();
+        let frame = image.size.itcm_bytes - tracer;
+        println!("{board}, {profile}: tracer {tracer} bytes, frame {frame}");
+        // The shares are told apart: neither is next to nothing.
+        assert!(
+            tracer > 4096 && frame > 4096,
+            "{board}, {profile}: {tracer}, {frame}"
+        );
+        assert!(frame <= BUDGET, "{board}, {profile}: {frame} bytes");
     }
 }
 
