@@ -1,7 +1,6 @@
 //! The plain list: every primitive is tried.
 
 use core::marker::PhantomData;
-use core::ptr;
 
 use super::Aggregate;
 use crate::arithmetic::Formats;
@@ -54,23 +53,23 @@ impl<P: Profile, F: Needs> Visitor for Closest<'_, P, F> {
         if !F::NEEDS.has(S::CAPABILITY) {
             return;
         }
-        // Within a kind, primitives are told apart by where they lie: that is one number less to keep for each.
-        let index = |place: *const S| first + (place.addr() - shapes.as_ptr().addr()) / size_of::<S>();
-        let departed = shapes
-            .as_ptr()
-            .wrapping_add(self.ray.departed.index().wrapping_sub(first));
-        let mut nearest = ptr::null();
-        for shape in shapes {
+        // A primitive is known by how many are left with it: the one number that the loop has to count anyway.
+        let left_at = |index: usize| shapes.len().wrapping_sub(index.wrapping_sub(first));
+        let index_at = |left: usize| first + shapes.len() - left;
+        let departed = left_at(self.ray.departed.index());
+        let (mut nearest, mut left) = (0, shapes);
+        while let [shape, rest @ ..] = left {
             let standing = Standing {
-                departs: ptr::eq(departed, shape),
-                two_sided: self.list.is_two_sided::<F>(PrimitiveId::new(index(shape))),
+                departs: left.len() == departed,
+                two_sided: self.list.is_two_sided::<F>(PrimitiveId::new(index_at(left.len()))),
             };
             if let Some(t) = shape.closest::<P, F>(self.ray, standing, self.epsilon, self.t_max) {
-                (self.t_max, nearest) = (t, ptr::from_ref(shape));
+                (self.t_max, nearest) = (t, left.len());
             }
+            left = rest;
         }
-        if !nearest.is_null() {
-            self.nearest = PrimitiveId::new(index(nearest));
+        if nearest != 0 {
+            self.nearest = PrimitiveId::new(index_at(nearest));
         }
     }
 }
