@@ -38,13 +38,13 @@ fn a_sphere_is_these_bytes() {
         // One material and no hollow sphere; one solid.
         1,
         1,
-        // 4 in 32:32, and the sphere.
-        0,
-        4,
+        // Centre and radius, and 4 in 32:32.
         0x1_0000,
         0xffff_0000,
         0x8000,
         0x2_0000,
+        0,
+        4,
         // 2^60 over a radius of exactly 2^29 is 2^31, which saturates.
         i32::MAX as u32,
         12,

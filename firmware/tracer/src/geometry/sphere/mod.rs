@@ -34,12 +34,12 @@ pub struct Reciprocal {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
 pub struct SphereRecord {
-    /// Radius squared, exactly.
-    pub square: I32F32,
     /// Centre.
     pub centre: [I16F16; 3],
     /// Radius.
     pub radius: I16F16,
+    /// Radius squared, exactly.
+    pub square: I32F32,
     /// The mantissa of 1 / r.
     pub reciprocal: I1F31,
     /// See [`Reciprocal`].
