@@ -61,7 +61,9 @@ impl<P: Profile, F: Needs> Visitor for Closest<'_, P, F> {
         while let [shape, rest @ ..] = left {
             let standing = Standing {
                 departs: left.len() == departed,
-                two_sided: self.list.is_two_sided::<F>(PrimitiveId::new(index_at(left.len()))),
+                two_sided: self
+                    .list
+                    .is_two_sided::<F>(PrimitiveId::new(index_at(left.len()))),
             };
             if let Some(t) = shape.closest::<P, F>(self.ray, standing, self.epsilon, self.t_max) {
                 (self.t_max, nearest) = (t, left.len());
