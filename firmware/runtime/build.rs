@@ -60,7 +60,7 @@ fn capability(word: &str) -> Result<Capability, String> {
 fn image(profile: &str, needs: Capabilities) -> String {
     let needs: Vec<String> = needs
         .iter()
-        .map(|capability| format!("Capability::{}", capability.identifier()))
+        .map(|capability| format!("Capability::{capability:?}"))
         .collect();
     format!(
         "use tracer::scene::{{Capabilities, Capability, Needs}};\n\n\

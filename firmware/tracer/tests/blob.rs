@@ -1,6 +1,5 @@
 //! The scene's bytes: what is written is seen, and nothing else is accepted.
 
-#[allow(dead_code, reason = "other tests use the rest")]
 mod support;
 
 use fixedmath::{I2F30, U0F32};

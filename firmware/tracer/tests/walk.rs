@@ -14,7 +14,7 @@ use tracer::integrator::{Integrator, Path};
 use tracer::material::{DielectricNumbers, HemisphereSampling, Kind, MalleyDisc, TangentSphere};
 use tracer::profile::{Paper, Precise, Profile, Quadratic};
 use tracer::random::{FullState, LowBits, Random};
-use tracer::scene::{All, Scene};
+use tracer::scene::{All, Capabilities, Scene};
 use tracer::unit::{Plan, SPAN, Sums, Termination, render};
 
 fn plan(width: u16, height: u16, spp: u32) -> Plan {
@@ -80,6 +80,11 @@ fn the_published_parabola_is_seen_by_the_same_test() {
     assert!(found < 255.0 - 4.0 * 22.6, "{found}");
 }
 
+/// The scene in these bytes, for an image that can do everything.
+fn view(blob: &Blob) -> Scene<'_> {
+    Scene::view(blob.bytes(), Capabilities::ALL).unwrap()
+}
+
 /// The primitives of a scene of spheres: hollow ones first.
 fn records(scene: &Scene<'_>) -> Vec<SphereRecord> {
     let primitives = scene.aggregate.primitives;
@@ -122,7 +127,7 @@ fn a_ray_never_meets_at_once_the_surface_it_leaves() {
         sphere([0.0, 0.0, 0.0], 200.0, 0.7, Kind::Diffuse),
     ];
     let bytes = blob(&hollow, &solid);
-    let scene = bytes.view();
+    let scene = view(&bytes);
     let records = records(&scene);
     let bounds = scene.aggregate.bounds().unwrap();
     let mut random = FullState::for_unit(9, 9);
@@ -185,7 +190,7 @@ fn light_within_a_glass_ball_keeps_its_angle() {
     for radius in [1.0 / 256.0, 0.01, 0.1, 1.0, 16.5, 1000.0, 10_000.0] {
         let wall = sphere([0.0; 3], 10_900.0, 0.7, Kind::Diffuse);
         let bytes = blob(&[wall], &[sphere([0.0; 3], radius, 0.9, Kind::Dielectric)]);
-        let (scene, ball) = (bytes.view(), PrimitiveId::new(1));
+        let (scene, ball) = (view(&bytes), PrimitiveId::new(1));
         let mut entered = 0;
         for ray in 0..2000 {
             let normal = TangentSphere::direction::<Mixed, _>(Z, &mut random);
@@ -257,7 +262,7 @@ fn both_formulas_find_the_same_hits() {
         sphere([0.0, 0.0, 0.0], 200.0, 0.7, Kind::Diffuse),
     ];
     let bytes = blob(&hollow, &solid);
-    let scene = bytes.view();
+    let scene = view(&bytes);
     let mut random = FullState::for_unit(4, 4);
     let mut other = 0;
     for _ in 0..200_000 {
@@ -285,7 +290,7 @@ fn both_formulas_find_the_same_hits() {
 #[test]
 fn nothing_has_no_surface_and_no_bounds() {
     let bytes = blob(&[], &[]);
-    let scene = bytes.view();
+    let scene = view(&bytes);
     let ray = Ray::<Mixed> {
         origin: [I16F16::ZERO; 3],
         direction: Z,
@@ -310,7 +315,7 @@ fn sums<P: Profile>(blob: &Blob, plan: &Plan, id: u32) -> (Sums, u32) {
     let path = Path::<P, All>::new(plan);
     let camera = Camera::new(&camera(plan.width));
     let mut sums = [[U48F16::MAX; 3]; SPAN];
-    let rays = render(&path, &blob.view(), &camera, plan, id, &mut sums);
+    let rays = render(&path, &view(blob), &camera, plan, id, &mut sums);
     (sums, rays)
 }
 

@@ -26,6 +26,7 @@ use std::time::Duration;
 use wire::{Farewell, Name};
 
 use crate::film::Film;
+use crate::fleet::Fleet;
 use crate::report::Packets;
 use sequence::Sequence;
 
@@ -68,6 +69,25 @@ impl CoreRecord {
     pub fn fault(&self) -> Option<&str> {
         let latest = self.last_words.as_ref().or(self.ended.as_ref());
         latest.or(self.restarts.last()).map(String::as_str)
+    }
+
+    /// What is known about its end, `now`.
+    fn describe(&self, fleet: &Fleet, now: Duration) -> String {
+        let heard = match self.heard {
+            Some(heard) => format!("last heard {:.1} s ago", now.saturating_sub(heard).as_secs_f64()),
+            None => "never heard".to_owned(),
+        };
+        let mut text = format!("\n  core {}: {}, {heard}", self.core, fleet.how_ended(self.core));
+        if !self.restarts.is_empty() {
+            text.push_str(&format!(", started again {} times", self.restarts.len()));
+        }
+        if let Some(words) = &self.last_words {
+            text.push_str(&format!("\n    its last words: {words}"));
+        }
+        for line in fleet.last_output(self.core) {
+            text.push_str(&format!("\n    {line}"));
+        }
+        text
     }
 
     /// It has a new life, because its last one ended with `why`: it numbers its packets anew, and nobody knows yet where it is.
@@ -128,5 +148,7 @@ impl Collection {
     }
 }
 
+#[cfg(test)]
+mod faulty_network;
 #[cfg(test)]
 mod tests;

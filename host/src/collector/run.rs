@@ -235,7 +235,7 @@ impl<'a> Run<'a> {
             Message::Farewell(_) => {}
             // Its end follows, and says whether it has another life.
             Message::Fault(_) if self.fleet.sees_ends() => self.take_leases_back(core),
-            Message::Fault(fault) => self.bury(core, fault.reason),
+            Message::Fault(fault) => self.retire(core, fault.reason),
         }
         self.hand_out(core);
         Ok(())
@@ -369,8 +369,8 @@ impl<'a> Run<'a> {
         let how = said.unwrap_or_else(|| self.fleet.how_ended(core));
         match self.fleet.start_again(core) {
             Ok(true) => self.welcome_back(core, how),
-            Ok(false) => self.bury(core, &how),
-            Err(error) => self.bury(core, &format!("{how}; {error}")),
+            Ok(false) => self.retire(core, &how),
+            Err(error) => self.retire(core, &format!("{how}; {error}")),
         }
     }
 
@@ -387,7 +387,7 @@ impl<'a> Run<'a> {
         record.start_again(why);
     }
 
-    fn bury(&mut self, core: u16, how: &str) {
+    fn retire(&mut self, core: u16, how: &str) {
         self.cores[usize::from(core)].ended = Some(how.to_owned());
         self.progress.say(&format!("core {core} is gone: {how}"));
         self.take_leases_back(core);
@@ -435,7 +435,7 @@ impl<'a> Run<'a> {
         };
         let mut text = format!("{what}, with {} of {units} units in", state.units);
         for record in &self.cores {
-            text.push_str(&self.obituary(record));
+            text.push_str(&record.describe(self.fleet, self.now));
         }
         if let Some(rejection) = self.last_rejection {
             text.push_str(&format!(
@@ -444,32 +444,6 @@ impl<'a> Run<'a> {
             ));
         }
         Some(text)
-    }
-
-    /// What is known about the end of a core.
-    fn obituary(&self, record: &CoreRecord) -> String {
-        let heard = match record.heard {
-            Some(heard) => format!(
-                "last heard {:.1} s ago",
-                self.now.saturating_sub(heard).as_secs_f64()
-            ),
-            None => "never heard".to_owned(),
-        };
-        let mut text = format!(
-            "\n  core {}: {}, {heard}",
-            record.core,
-            self.fleet.how_ended(record.core)
-        );
-        if !record.restarts.is_empty() {
-            text.push_str(&format!(", started again {} times", record.restarts.len()));
-        }
-        if let Some(words) = &record.last_words {
-            text.push_str(&format!("\n    its last words: {words}"));
-        }
-        for line in self.fleet.last_output(record.core) {
-            text.push_str(&format!("\n    {line}"));
-        }
-        text
     }
 
     fn state(&self) -> State {

@@ -7,77 +7,19 @@ use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-use node::{Clock, Fault, Network, Outcome, SendError, StackUse, TICKS_PER_SECOND, Worker};
+use node::{Clock, Fault, Outcome, StackUse, TICKS_PER_SECOND, Worker};
 use rand_xoshiro::Xoshiro256StarStar;
-use rand_xoshiro::rand_core::{Rng, SeedableRng};
+use rand_xoshiro::rand_core::SeedableRng;
 use tracer::unit::SPAN;
 use wire::boot::PixelOrder;
 use wire::{Boot, Name};
 
+use super::faulty_network::{Faults, FaultyNetwork};
 use super::silence::Silence;
 use super::*;
-use crate::fleet::{self, Fleet, NativeFleet, QemuFleet};
+use crate::fleet::{self, NativeFleet, QemuFleet};
 use crate::session::tests::small;
 use crate::session::{Route, Session};
-
-/// What goes wrong on a core's network.
-#[derive(Clone, Copy, Default)]
-struct Faults {
-    loss_percent: u64,
-    duplicate_percent: u64,
-    /// Every packet is followed by one of another run.
-    foreign: bool,
-    /// Nothing leaves the core after this many packets.
-    dies_after: Option<u32>,
-}
-
-struct FaultyNetwork {
-    socket: UdpSocket,
-    chance: Xoshiro256StarStar,
-    faults: Faults,
-    sent: u32,
-    given_up: Arc<AtomicBool>,
-}
-
-impl FaultyNetwork {
-    fn percent(&mut self, percent: u64) -> bool {
-        self.chance.next_u64() % 100 < percent
-    }
-
-    fn is_dead(&self) -> bool {
-        self.faults.dies_after.is_some_and(|packets| self.sent > packets)
-    }
-}
-
-impl Network for FaultyNetwork {
-    fn send(&mut self, payload: &[u8]) -> Result<(), SendError> {
-        self.sent += 1;
-        if self.is_dead() || self.given_up.load(Ordering::Relaxed) {
-            return Err(SendError);
-        }
-        let copies = 1 + u64::from(self.percent(self.faults.duplicate_percent));
-        for _ in 0..copies {
-            if !self.percent(self.faults.loss_percent) {
-                self.socket.send(payload).map_err(|_| SendError)?;
-            }
-        }
-        if self.faults.foreign {
-            let mut other = payload.to_vec();
-            other[14] ^= 1; // The session's lowest byte.
-            self.socket.send(&other).map_err(|_| SendError)?;
-        }
-        Ok(())
-    }
-
-    fn receive(&mut self, buffer: &mut [u8]) -> Option<usize> {
-        let len = self.socket.recv(buffer).ok()?;
-        (!self.percent(self.faults.loss_percent)).then_some(len)
-    }
-
-    fn wait(&mut self, _ticks: u32) {
-        thread::sleep(Duration::from_millis(1));
-    }
-}
 
 struct HostClock(Instant);
 

@@ -24,7 +24,7 @@ use crate::setup::Toolchain;
 use crate::workspace::{self, NoWorkspace};
 
 pub use elf::{ImageSize, board_of, entry, measure};
-pub use share::tracer_bytes;
+pub use share::{code_bytes, tracer_bytes};
 
 /// What an image is to be built for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -15,39 +15,52 @@ const TRACER: [&str; 2] = ["firmware/tracer/src/", "fixedmath/src/"];
 /// Crates of the tracer, as constants of theirs are named.
 const CRATES: [&str; 2] = ["tracer::", "fixedmath::"];
 
-/// Bytes of an image that are the tracer's and the arithmetic's. By the line tables, every halfword of code is asked for the
-/// functions it is part of: what the tracer calls of `core` and has inlined is its own, and what of it is inlined elsewhere, too.
-/// Constants count by their names; routines of the compiler's library are the frame's.
+/// Bytes of an image that are the tracer's and the arithmetic's: their code, and constants by their names. Routines of the
+/// compiler's library are the frame's.
 pub fn tracer_bytes(elf: &Path) -> Result<u64, FirmwareError> {
-    let failed = |cause: String| FirmwareError::Elf {
-        path: elf.to_owned(),
-        cause,
+    let measured = || -> Result<u64, Box<dyn Error>> {
+        let bytes = fs::read(elf)?;
+        let file = object::File::parse(&bytes[..])?;
+        let constants = file.symbols().filter(|symbol| symbol.kind() == SymbolKind::Data);
+        let ours = constants.filter(|symbol| {
+            let name = demangle_auto(symbol.name().unwrap_or_default().into(), None);
+            CRATES.iter().any(|of| name.starts_with(of))
+        });
+        Ok(ours.map(|symbol| symbol.size()).sum())
     };
-    let bytes = fs::read(elf).map_err(|error| failed(error.to_string()))?;
-    let file = object::File::parse(&bytes[..]).map_err(|error| failed(error.to_string()))?;
-    let loader = Loader::new(elf).map_err(|error| failed(error.to_string()))?;
-    let text = file
-        .section_by_name(".text")
-        .ok_or_else(|| failed("it has no code".to_owned()))?;
-    let mut found = 0;
-    for address in (text.address()..text.address() + text.size()).step_by(2) {
-        if is_tracer(&loader, address).map_err(|error| failed(error.to_string()))? {
-            found += 2;
-        }
-    }
-    let constants = file.symbols().filter(|symbol| symbol.kind() == SymbolKind::Data);
-    let ours = constants.filter(|symbol| {
-        let name = demangle_auto(symbol.name().unwrap_or_default().into(), None);
-        CRATES.iter().any(|of| name.starts_with(of))
-    });
-    Ok(found + ours.map(|symbol| symbol.size()).sum::<u64>())
+    let constants = measured().map_err(|error| unreadable(elf, &*error))?;
+    Ok(code_bytes(elf, &TRACER)? + constants)
 }
 
-fn is_tracer(loader: &Loader, address: u64) -> Result<bool, Box<dyn Error>> {
+/// Bytes of an image's code that come from sources in these folders. By the line tables, every halfword is asked for the functions
+/// it is part of: what they call of `core` and have inlined is theirs, and what of them is inlined elsewhere, too.
+pub fn code_bytes(elf: &Path, folders: &[&str]) -> Result<u64, FirmwareError> {
+    let measured = || -> Result<u64, Box<dyn Error>> {
+        let bytes = fs::read(elf)?;
+        let file = object::File::parse(&bytes[..])?;
+        let text = file.section_by_name(".text").ok_or("it has no code")?;
+        let loader = Loader::new(elf)?;
+        let mut found = 0;
+        for address in (text.address()..text.address() + text.size()).step_by(2) {
+            found += if is_from(&loader, address, folders)? { 2 } else { 0 };
+        }
+        Ok(found)
+    };
+    measured().map_err(|error| unreadable(elf, &*error))
+}
+
+fn unreadable(elf: &Path, error: &dyn Error) -> FirmwareError {
+    FirmwareError::Elf {
+        path: elf.to_owned(),
+        cause: error.to_string(),
+    }
+}
+
+fn is_from(loader: &Loader, address: u64, folders: &[&str]) -> Result<bool, Box<dyn Error>> {
     let mut frames = loader.find_frames(address)?;
     while let Some(frame) = frames.next()? {
         let file = frame.location.and_then(|location| location.file);
-        if file.is_some_and(|file| TRACER.iter().any(|of| file.contains(of))) {
+        if file.is_some_and(|file| folders.iter().any(|of| file.contains(of))) {
             return Ok(true);
         }
     }

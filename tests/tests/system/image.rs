@@ -195,29 +195,17 @@ fn the_frame_around_the_tracer_is_small() {
     }
 }
 
-/// Instructions that come from `fixedmath`, with what they inline of `core`, wherever they were inlined themselves: by the
-/// line tables, every word of code is asked for the functions it is part of.
+/// Code that comes from `fixedmath`, wherever it was inlined.
 #[test]
 fn the_arithmetic_of_the_cornell_box_is_small() {
-    const BUDGET: usize = 4096;
+    const BUDGET: u64 = 4096;
     let image = build(
         &toolchain(),
         Board::Versatilepb,
         &recipe(Arithmetic::Precise, CORNELL),
     )
     .unwrap();
-    let loader = addr2line::Loader::new(&image.elf).unwrap();
-    let is_arithmetic = |address: u64| {
-        let mut frames = loader.find_frames(address).unwrap();
-        let mut found = false;
-        while let Some(frame) = frames.next().unwrap() {
-            let file = frame.location.and_then(|location| location.file);
-            found |= file.is_some_and(|file| file.contains("fixedmath/src/"));
-        }
-        found
-    };
-    let words = (0..image.size.itcm_bytes).step_by(4);
-    let bytes = 4 * words.filter(|&address| is_arithmetic(address)).count();
+    let bytes = firmware::code_bytes(&image.elf, &["fixedmath/src/"]).unwrap();
     println!("fixedmath's code in the Cornell box's image: {bytes} bytes");
     assert!((1000..=BUDGET).contains(&bytes), "{bytes}");
 }

@@ -42,7 +42,7 @@ struct Closest<'a, P: Profile, F> {
     ray: &'a Ray<P::Numbers>,
     epsilon: Length<P>,
     t_max: Length<P>,
-    /// That of the nearest surface.
+    /// Whose the nearest surface is.
     nearest: PrimitiveId,
     needs: PhantomData<F>,
 }

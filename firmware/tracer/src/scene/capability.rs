@@ -15,13 +15,6 @@ macro_rules! capabilities {
             /// All there are.
             pub const ALL: &'static [Self] = &[$(Self::$name),+];
 
-            /// Its name in Rust, for code that is generated.
-            pub const fn identifier(self) -> &'static str {
-                match self {
-                    $(Self::$name => stringify!($name),)+
-                }
-            }
-
             /// Its word in lists for people.
             pub const fn word(self) -> &'static str {
                 match self {

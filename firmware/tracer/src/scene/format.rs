@@ -9,7 +9,7 @@
 //! | to a multiple of 8 | zero |
 //!
 //! Records are read where they lie, so the bytes are aligned to 8, numbers are the core's own, little-endian, and a record is what
-//! its `#[repr(C)]` type says. What a record may hold, its type says, too ([`Shape::is_sound`], [`MaterialRecord::is_sound`]).
+//! its `#[repr(C)]` type says. What a shape's record may hold, [`Shape::is_sound`] says.
 
 use bytemuck::{Pod, Zeroable};
 
@@ -122,7 +122,7 @@ impl<'s> Scene<'s> {
         Ok(scene)
     }
 
-    /// Whether all records are sound, and need no more than the header says.
+    /// Whether all records are sound, and of no other shape or BSDF than the header says.
     fn check(&self, needs: Capabilities) -> Result<(), BlobError> {
         for material in self.materials {
             match material.capability() {

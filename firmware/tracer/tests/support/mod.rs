@@ -6,7 +6,7 @@ use tracer::camera::CameraRecord;
 use tracer::geometry::PrimitiveSet;
 use tracer::geometry::sphere::SphereRecord;
 use tracer::material::{Dielectric, Kind, MaterialId, MaterialRecord};
-use tracer::scene::{Capabilities, Header, Scene};
+use tracer::scene::{Capabilities, Header};
 
 pub(crate) fn q16(value: f64) -> I16F16 {
     I16F16::from_num(value)
@@ -73,11 +73,6 @@ impl Blob {
 
     pub(crate) fn bytes_mut(&mut self) -> &mut [u8] {
         bytemuck::cast_slice_mut(&mut self.0)
-    }
-
-    /// For an image that can do everything.
-    pub(crate) fn view(&self) -> Scene<'_> {
-        Scene::view(self.bytes(), Capabilities::ALL).unwrap()
     }
 }
 
