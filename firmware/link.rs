@@ -1,4 +1,5 @@
-//! Every board's build script. It hands the linker its scripts: `link.x` is the start-up crate's, and includes the board's `memory.x`.
+//! Every board's build script. It hands the linker its scripts: `link.x` is the start-up crate's, and includes the workspace's
+//! `memory.x`, which includes the board's `board.x`.
 #![expect(clippy::print_stdout, reason = "a build script talks to cargo there")]
 
 use std::env;
@@ -6,11 +7,10 @@ use std::env;
 fn main() {
     let board = env::var("CARGO_MANIFEST_DIR").expect("cargo sets CARGO_MANIFEST_DIR");
     let firmware = format!("{board}/..");
-    for folder in [&firmware, &board] {
+    let root = format!("{firmware}/..");
+    for (folder, script) in [(root, "memory.x"), (firmware, "no_float.x"), (board, "board.x")] {
         println!("cargo::rustc-link-search={folder}");
-    }
-    for script in [format!("{firmware}/no_float.x"), format!("{board}/memory.x")] {
-        println!("cargo::rerun-if-changed={script}");
+        println!("cargo::rerun-if-changed={folder}/{script}");
     }
     println!("cargo::rustc-link-arg=-Tlink.x");
     println!("cargo::rustc-link-arg=-Tno_float.x");

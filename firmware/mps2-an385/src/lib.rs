@@ -12,7 +12,7 @@
 //! | [`fault`]        | panics and processor exceptions                       |
 //! | `log`            | semihosting, with the feature `log`                   |
 //!
-//! Start-up code, vectors and the sections' layout are `cortex-m-rt`'s; `memory.x` says where everything lies.
+//! Start-up code, vectors and the sections' layout are `cortex-m-rt`'s; `board.x` says where everything lies.
 #![no_std]
 
 pub mod clock;

@@ -1,6 +1,6 @@
 //! What every board's image does, from the boot block to the last words.
 //!
-//! A board is a crate that implements [`Board`] and brings the start-up code of its processor, a `memory.x`, and handlers for its
+//! A board is a crate that implements [`Board`] and brings the start-up code of its processor, a `board.x`, and handlers for its
 //! processor's exceptions. The rest of an image is here: [`run`] is all of its `main`, and [`die`] is where every failure ends.
 //! What touches memory as such is in three small rooms:
 //!
@@ -117,7 +117,7 @@ pub fn run<B: Board>() -> ! {
     let name = const { Name::new(B::NAME) };
     match work(&boot, name, &mut network, &mut B::clock()) {
         Ok(outcome) if outcome.stack.used >= outcome.stack.size => die::<B>(
-            &Words::of("the stack ran over: enlarge it in memory.x"),
+            &Words::of("the stack ran over: enlarge it in board.x"),
             Exit::Fault,
         ),
         Ok(_) => B::exit(Exit::Done),

@@ -1,7 +1,7 @@
 //! What the linker and the loader have put into data memory: the boot block and the stack.
 //!
-//! A board's `memory.x` says where: it defines the symbols `__boot_block`, `__boot_block_size`, `_work_stack_low_end` and
-//! `_work_stack_high_end`.
+//! `memory.x` and the board's `board.x` say where: they define the symbols `__boot_block`, `__boot_block_size`,
+//! `_work_stack_low_end` and `_work_stack_high_end`.
 
 use core::ops::Range;
 

@@ -12,7 +12,7 @@
 //! | [`fault`]        | panics and processor exceptions                    |
 //! | `log`            | the second PL011, with the feature `log`           |
 //!
-//! Start-up code, vectors and the sections' layout are `aarch32-rt`'s; `memory.x` says where everything lies.
+//! Start-up code, vectors and the sections' layout are `aarch32-rt`'s; `board.x` says where everything lies.
 #![no_std]
 
 pub mod clock;

@@ -8,6 +8,7 @@ use host::arithmetic::Arithmetic;
 use host::board::{Board, DTCM_BUDGET, ITCM_BUDGET};
 use host::firmware::{self, Recipe, build};
 use host::fleet::run_to_end;
+use object::{Object, ObjectSymbol};
 use tracer::scene::{Capabilities, Capability};
 use whole_system::{qemu, said, system_linker, toolchain};
 
@@ -174,6 +175,25 @@ fn every_image_fits_and_holds_no_more_than_its_scene_needs() {
             plain.itcm_bytes + 500 < full.itcm_bytes,
             "a mirror and a dielectric are code"
         );
+    }
+}
+
+/// `memory.x` states a core's memory, and `board.x` where it lies: the linker has written both into the image.
+#[test]
+fn the_host_and_the_loader_know_the_memory_that_images_are_linked_for() {
+    let toolchain = toolchain();
+    for board in Board::ALL {
+        let image = build(&toolchain, board, &recipe(Arithmetic::Precise, CORNELL)).unwrap();
+        let elf = fs::read(image.elf).unwrap();
+        let file = object::File::parse(&*elf).unwrap();
+        let symbol = |name| file.symbol_by_name(name).expect(name).address();
+        let memory = |start, size| symbol(start)..symbol(start) + symbol(size);
+        assert_eq!(memory("__itcm_start", "__itcm_size"), board.itcm());
+        assert_eq!(memory("__dtcm_start", "__dtcm_size"), board.dtcm());
+        assert_eq!(symbol("__itcm_size") - symbol("__itcm_reserved"), ITCM_BUDGET);
+        assert_eq!(symbol("__dtcm_size") - symbol("__dtcm_reserved"), DTCM_BUDGET);
+        assert_eq!(symbol("__boot_block"), board.dtcm().start);
+        assert_eq!(symbol("__boot_block_size"), wire::boot::MAX_LEN as u64);
     }
 }
 
