@@ -5,8 +5,8 @@
 #![expect(clippy::print_stdout, reason = "figures of tests, by helpers of theirs")]
 
 use fixedmath::U48F16;
-use host::compare::{Comparison, compare};
-use host::direct;
+use host::oracle::compare::{Comparison, compare};
+use host::oracle::direct;
 use host::scene::{Scene, compile};
 use tracer::camera::Camera;
 use tracer::integrator::{Integrator, Path};

@@ -6,8 +6,8 @@
 
 use std::sync::OnceLock;
 
-use host::compare::{Comparison, compare};
-use host::picture::Estimate;
+use host::image::picture::Estimate;
+use host::oracle::compare::{Comparison, compare};
 use host::scene::{Material, Scene};
 use tracer::profile::{Paper, Precise, Profile};
 use whole_system::{cornell, estimate, film, plan, reference, repository};

@@ -4,8 +4,8 @@ use std::io::{IsTerminal, stdin};
 use std::process::ExitCode;
 
 use anyhow::Context;
-use host::interrupt;
-use host::job::{self, DebugOptions};
+use host::platform::interrupt;
+use host::render::{self, DebugOptions};
 
 /// Arguments of `gdb`.
 #[derive(clap::Args)]
@@ -19,7 +19,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
     if stdin().is_terminal() {
         interrupt::leave_to_child();
     }
-    let status = job::debug(&arguments.options)?;
+    let status = render::debug(&arguments.options)?;
     let code = status
         .code()
         .with_context(|| format!("the debugger did not end by itself: {status}"))?;

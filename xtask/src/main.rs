@@ -15,9 +15,9 @@ use std::sync::atomic::Ordering;
 
 use anyhow::Context;
 use clap::Parser;
-use host::console::{self, OutputError};
-use host::interrupt;
-use host::setup::Install;
+use host::platform::console::{self, OutputError};
+use host::platform::interrupt;
+use host::platform::setup::Install;
 
 /// The project's commands
 #[derive(Parser)]

@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
 use anyhow::{Context, anyhow};
-use host::board::Board;
 use host::firmware;
-use host::interrupt;
-use host::setup::{self, Wanted};
+use host::firmware::board::Board;
+use host::platform::interrupt;
+use host::platform::setup::{self, Wanted};
 
 use crate::SetUp;
 

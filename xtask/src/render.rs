@@ -3,9 +3,9 @@
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 
-use host::console::say;
-use host::job;
-use host::job::options::RenderOptions;
+use host::platform::console::say;
+use host::render;
+use host::render::options::RenderOptions;
 
 /// Arguments of `render`.
 #[derive(clap::Args)]
@@ -15,7 +15,7 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments, interrupted: &AtomicBool) -> anyhow::Result<ExitCode> {
-    let finished = job::render(&arguments.options, interrupted)?;
+    let finished = render::render(&arguments.options, interrupted)?;
     say(finished.summary)?;
     Ok(ExitCode::SUCCESS)
 }

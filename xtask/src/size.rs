@@ -4,14 +4,14 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::{Context, ensure};
-use host::arithmetic::Arithmetic;
-use host::board::{Board, DTCM_BUDGET, ITCM_BUDGET};
-use host::console::say;
+use host::firmware::arithmetic::Arithmetic;
+use host::firmware::board::{Board, DTCM_BUDGET, ITCM_BUDGET};
 use host::firmware::{self, Capability, ImageSize, Recipe};
+use host::fleet::session::boot_block_len;
+use host::platform::console::say;
+use host::platform::setup::{self, Toolchain, Wanted};
+use host::platform::workspace;
 use host::scene::{Scene, compile};
-use host::session::boot_block_len;
-use host::setup::{self, Toolchain, Wanted};
-use host::workspace;
 use serde::Serialize;
 
 use crate::SetUp;

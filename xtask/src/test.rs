@@ -7,15 +7,15 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, bail};
-use host::arithmetic::Arithmetic;
-use host::board::Board;
-use host::console::say;
+use host::firmware::Level;
+use host::firmware::arithmetic::Arithmetic;
+use host::firmware::board::Board;
 use host::firmware::{self, Capability, Recipe};
-use host::interrupt;
-use host::log::Level;
+use host::platform::console::say;
+use host::platform::interrupt;
+use host::platform::setup::{self, Toolchain, Wanted};
+use host::platform::workspace::{self, NoWorkspace};
 use host::scene::{Scene, compile};
-use host::setup::{self, Toolchain, Wanted};
-use host::workspace::{self, NoWorkspace};
 
 use crate::{SetUp, size, verify};
 

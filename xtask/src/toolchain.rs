@@ -5,10 +5,10 @@ use std::os::unix::ffi::OsStrExt;
 use std::process::ExitCode;
 
 use anyhow::Context;
-use host::board::Board;
-use host::console::put;
 use host::firmware;
-use host::setup::{self, Wanted};
+use host::firmware::board::Board;
+use host::platform::console::put;
+use host::platform::setup::{self, Wanted};
 
 use crate::SetUp;
 

@@ -3,8 +3,8 @@
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 
-use host::console::say;
-use host::job::{self, TraceOptions};
+use host::platform::console::say;
+use host::render::{self, TraceOptions};
 
 /// Arguments of `trace`.
 #[derive(clap::Args)]
@@ -14,7 +14,7 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments, interrupted: &AtomicBool) -> anyhow::Result<ExitCode> {
-    let traced = job::trace(&arguments.options, interrupted)?;
+    let traced = render::trace(&arguments.options, interrupted)?;
     let said = traced.packets.iter().try_for_each(say);
     // How the render ended comes before what could not be said of it.
     let finished = traced.end?;

@@ -3,11 +3,11 @@
 use std::process::ExitCode;
 
 use anyhow::ensure;
-use host::console::say;
-use host::operations::Entry;
-use host::operations::record::{Record, sources_sha256};
-use host::operations::table::figure;
-use host::operations::verify::{Depth, Verdict, bar, verify};
+use host::bench::operations::Entry;
+use host::bench::operations::record::{Record, sources_sha256};
+use host::bench::operations::table::figure;
+use host::bench::operations::verify::{Depth, Verdict, bar, verify};
+use host::platform::console::say;
 
 /// Arguments of `verify`.
 #[derive(clap::Args)]

@@ -5,13 +5,13 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Parser;
-use host::board::Board;
 use host::collector::{self, CollectError};
-use host::console::{self, note, say};
-use host::interrupt;
-use host::job::options::PictureOptions;
-use host::job::{Finished, Job, JobError, boot_blocks};
-use host::session::{Route, Session};
+use host::firmware::board::Board;
+use host::fleet::session::{Route, Session};
+use host::platform::console::{self, note, say};
+use host::platform::interrupt;
+use host::render::options::PictureOptions;
+use host::render::{Finished, Job, RenderError, boot_blocks};
 
 /// Collects a picture from cores that are started elsewhere.
 ///
@@ -50,7 +50,7 @@ fn main() -> ExitCode {
                 Ok(()) => ExitCode::SUCCESS,
                 Err(error) => error.end(),
             },
-            Err(error @ JobError::Interrupted(_)) => {
+            Err(error @ RenderError::Interrupted(_)) => {
                 fail(&error.to_string(), ExitCode::from(interrupt::EXIT_CODE))
             }
             Err(error) => fail(&error.to_string(), ExitCode::FAILURE),
@@ -63,7 +63,7 @@ fn fail(error: &str, code: ExitCode) -> ExitCode {
     code
 }
 
-fn run(arguments: &Arguments, interrupted: &std::sync::atomic::AtomicBool) -> Result<Finished, JobError> {
+fn run(arguments: &Arguments, interrupted: &std::sync::atomic::AtomicBool) -> Result<Finished, RenderError> {
     let job = Job::new(&arguments.picture)?;
     let socket: UdpSocket = collector::bind(Ipv4Addr::UNSPECIFIED, arguments.port)?;
     let port = socket.local_addr().map_err(CollectError::Socket)?.port();
@@ -99,8 +99,8 @@ fn route(arguments: &Arguments, port: u16) -> Route {
     }
 }
 
-fn write_boot_blocks(folder: &Path, session: &Session, route: &Route) -> Result<(), JobError> {
-    let failed = |cause| JobError::Out {
+fn write_boot_blocks(folder: &Path, session: &Session, route: &Route) -> Result<(), RenderError> {
+    let failed = |cause| RenderError::Out {
         path: folder.to_owned(),
         cause,
     };

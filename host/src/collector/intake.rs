@@ -5,7 +5,7 @@ use std::fmt;
 use wire::boot::PixelOrder;
 use wire::{DecodeError, FromCore, Hello, Message, Name, Pixels};
 
-use crate::session::Session;
+use crate::fleet::session::Session;
 
 /// Why a packet does not count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -103,7 +103,7 @@ fn judge_pixels(session: &Session, pixels: &Pixels) -> Result<(), Rejection> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::tests::small;
+    use crate::fleet::session::tests::small;
     use wire::{MAX_PAYLOAD, PixelSums};
 
     fn pixels(session: &Session, unit: u32) -> Pixels {

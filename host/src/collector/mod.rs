@@ -23,16 +23,15 @@ mod socket;
 use std::net::SocketAddr;
 use std::time::Duration;
 
+use serde::{Deserialize, Serialize};
 use wire::{Farewell, Name};
 
-use crate::film::Film;
 use crate::fleet::Fleet;
-use crate::report::Packets;
+use crate::image::film::Film;
 use sequence::Sequence;
 
 pub use progress::Progress;
 pub use run::{CollectError, collect};
-pub(crate) use socket::rest;
 pub use socket::{BindError, bind};
 
 /// What the collector knows of one core.
@@ -107,6 +106,19 @@ pub enum End {
     Interrupted,
     /// No core is left that says anything; the text says why and names the cores.
     Deserted(String),
+}
+
+/// Packet counts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Packets {
+    /// Pixel packets that arrived.
+    pub received: u64,
+    /// Of those, units that were already in the film.
+    pub duplicate: u64,
+    /// Packets that were not understood, or belong to another session, scene or epoch.
+    pub rejected: u64,
+    /// Gaps in the cores' running numbers.
+    pub lost: u64,
 }
 
 /// What was collected; complete or not, as `end` says.

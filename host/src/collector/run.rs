@@ -15,12 +15,12 @@ use super::intake::{Rejection, judge};
 use super::leases::{Arrival, Leases};
 use super::progress::{Progress, State};
 use super::silence::Silence;
-use super::{Collection, CoreRecord, End, rest};
-use crate::film::{Film, FilmError};
+use super::{Collection, CoreRecord, End, Packets};
+use crate::firmware::symbols;
+use crate::fleet::session::Session;
 use crate::fleet::{Fleet, RESTARTS};
-use crate::report::Packets;
-use crate::session::Session;
-use crate::symbols;
+use crate::image::film::{Film, FilmError};
+use crate::platform::wait;
 
 /// How long the socket is waited for at once, and so how often deaths and late leases are looked for.
 const TICK: Duration = Duration::from_millis(10);
@@ -197,7 +197,7 @@ impl<'a> Run<'a> {
     fn receive(&mut self, buffer: &mut [u8]) -> io::Result<Option<(usize, SocketAddr)>> {
         let mut received = self.take_from_socket(buffer)?;
         if received.is_none() {
-            rest([self.socket.as_fd()], TICK);
+            wait([self.socket.as_fd()], TICK);
             received = self.take_from_socket(buffer)?;
         }
         Ok(received)

@@ -75,7 +75,7 @@ impl Silence {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::arithmetic::Arithmetic;
+    use crate::firmware::arithmetic::Arithmetic;
     use crate::fleet::NativeFleet;
 
     const SECOND: Duration = Duration::from_secs(1);

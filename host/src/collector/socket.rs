@@ -2,10 +2,7 @@
 
 use std::io;
 use std::net::{Ipv4Addr, SocketAddr, UdpSocket};
-use std::os::fd::BorrowedFd;
-use std::time::Duration;
 
-use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use socket2::{Domain, Protocol, Socket, Type};
 
 /// Room for the packets of a whole fleet while the host is busy; the system may grant less.
@@ -41,17 +38,6 @@ pub fn bind(address: Ipv4Addr, port: u16) -> Result<UdpSocket, BindError> {
         io::ErrorKind::AddrInUse => BindError::Taken(port),
         _ => BindError::Other { port, cause },
     })
-}
-
-/// Rests until one of `sources` has something to read or has ended, or `longest` has passed, or a signal comes.
-pub(crate) fn rest<const N: usize>(sources: [BorrowedFd<'_>; N], longest: Duration) {
-    let timeout = Timespec {
-        tv_sec: longest.as_secs().try_into().unwrap_or(i64::MAX),
-        tv_nsec: longest.subsec_nanos().into(),
-    };
-    let mut sources = sources.map(|source| PollFd::from_borrowed_fd(source, PollFlags::IN));
-    // However it ends, the caller looks at its sources next; what is wrong with them it hears then.
-    let _ready = poll(&mut sources, Some(&timeout));
 }
 
 #[cfg(test)]

@@ -17,9 +17,9 @@ use wire::{Boot, Name};
 use super::faulty_network::{Faults, FaultyNetwork};
 use super::silence::Silence;
 use super::*;
+use crate::fleet::session::tests::small;
+use crate::fleet::session::{Route, Session};
 use crate::fleet::{self, NativeFleet, QemuFleet};
-use crate::session::tests::small;
-use crate::session::{Route, Session};
 
 struct HostClock(Instant);
 
@@ -286,7 +286,8 @@ fn cores_that_failed_to_start_end_it_at_once_with_their_reason() {
     let session = small(2, PixelOrder::Leased);
     let socket = bind(Ipv4Addr::LOCALHOST, 0).expect("a free port");
     let damaged = vec![vec![0; 100]; 2];
-    let fleet = NativeFleet::start(&damaged, crate::arithmetic::Arithmetic::Precise).expect("threads");
+    let fleet =
+        NativeFleet::start(&damaged, crate::firmware::arithmetic::Arithmetic::Precise).expect("threads");
     let start = Instant::now();
     let end = collect(
         &session,
@@ -381,7 +382,8 @@ fn packets_of_another_run_are_named_when_nothing_else_comes() {
     let port = socket.local_addr().expect("it is bound").port();
     let foreign = Cores::start(&other, port, &[Faults::default()]);
     // Its own core exists but never says a word that counts, so that the silence is its own.
-    let damaged = NativeFleet::start(&[vec![]], crate::arithmetic::Arithmetic::Precise).expect("a thread");
+    let damaged =
+        NativeFleet::start(&[vec![]], crate::firmware::arithmetic::Arithmetic::Precise).expect("a thread");
     thread::sleep(Duration::from_millis(100));
     let end = collect(
         &session,

@@ -1,15 +1,50 @@
 //! What is in a finished image: whose it is, how much memory it takes, and whether there is floating point in it.
 
 use std::fmt;
-use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::{fs, io};
 
 use object::elf::SHF_ALLOC;
 use object::{Object, ObjectSection, ObjectSegment, ObjectSymbol, SectionFlags};
 use serde::{Deserialize, Serialize};
 
-use super::FirmwareError;
-use crate::board::{Board, DTCM_BUDGET, ITCM_BUDGET};
+use super::board::{Board, DTCM_BUDGET, ITCM_BUDGET};
+
+/// An ELF file that is no image of ours.
+#[derive(Debug, thiserror::Error)]
+#[error("firmware: {} is no image of ours", path.display())]
+pub struct ElfError {
+    /// The file.
+    pub path: PathBuf,
+    /// What is wrong with it.
+    #[source]
+    pub fault: ElfFault,
+}
+
+/// What is wrong with an ELF file.
+#[derive(Debug, thiserror::Error)]
+pub enum ElfFault {
+    /// It cannot be read.
+    #[error(transparent)]
+    Read(#[from] io::Error),
+    /// It is none.
+    #[error(transparent)]
+    Format(#[from] object::Error),
+    /// It has no section or symbol of this name.
+    #[error("it has no {0}")]
+    Without(&'static str),
+    /// Its line tables make no sense.
+    #[error("its line tables: {0}")]
+    Lines(String),
+}
+
+impl ElfFault {
+    /// The same of the file at `path`.
+    pub fn of(self, path: &Path) -> ElfError {
+        let path = path.to_owned();
+        ElfError { path, fault: self }
+    }
+}
 
 /// Memory an image takes.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -53,25 +88,24 @@ pub fn board_of(elf: &[u8]) -> Result<Board, String> {
 }
 
 /// The symbol of an image's first line of Rust: the one that its start-up crate calls when memory is in order.
-pub fn entry(elf: &Path) -> Result<&'static str, FirmwareError> {
+pub fn entry(elf: &Path) -> Result<&'static str, ElfError> {
     /// Of `cortex-m-rt`, and of `aarch32-rt`.
     const NAMES: [&str; 2] = ["main", "kmain"];
-    let failed = |cause: String| FirmwareError::Elf {
-        path: elf.to_owned(),
-        cause,
+    let found = || {
+        let bytes = fs::read(elf)?;
+        let file = object::File::parse(&bytes[..])?;
+        let found = NAMES.into_iter().find(|name| file.symbol_by_name(name).is_some());
+        found.ok_or(ElfFault::Without("symbol main or kmain"))
     };
-    let bytes = fs::read(elf).map_err(|error| failed(error.to_string()))?;
-    let file = object::File::parse(&bytes[..]).map_err(|error| failed(error.to_string()))?;
-    let found = NAMES.into_iter().find(|name| file.symbol_by_name(name).is_some());
-    found.ok_or_else(|| failed(format!("it has no symbol {}", NAMES.join(" or "))))
+    found().map_err(|fault: ElfFault| fault.of(elf))
 }
 
 /// Measures a board's ELF file. What takes memory of a core is what is loaded there and what its sections reserve.
-pub fn measure(board: Board, elf: &[u8]) -> Result<ImageSize, String> {
-    let file = object::File::parse(elf).map_err(|error| error.to_string())?;
-    let symbol = |name: &str| {
+pub fn measure(board: Board, elf: &[u8]) -> Result<ImageSize, ElfFault> {
+    let file = object::File::parse(elf)?;
+    let symbol = |name| {
         let found = file.symbol_by_name(name).map(|symbol| symbol.address());
-        found.ok_or_else(|| format!("it has no symbol {name}"))
+        found.ok_or(ElfFault::Without(name))
     };
     let stacks = symbol("_stacks_low_end")?..symbol("_stacks_high_end")?;
     let mut size = ImageSize {
@@ -193,6 +227,7 @@ mod tests {
         assert!(
             measure(Board::Versatilepb, &own)
                 .expect_err("not an image")
+                .to_string()
                 .contains("_stacks_low_end")
         );
     }

@@ -10,9 +10,10 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use super::FleetError;
-use super::qemu::{Core, unusable};
-use crate::log::{Dictionary, Entry, Level, Stream};
+use super::core::Core;
+use super::{FleetError, unusable};
+use crate::firmware::Level;
+use crate::firmware::log::{Dictionary, Entry, Stream};
 
 /// Time between two looks into the cores' files.
 const LOOK_EVERY: Duration = Duration::from_millis(250);
@@ -130,8 +131,8 @@ impl FleetLog {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::board::Board;
-    use crate::log::tests::{dictionary, frame};
+    use crate::firmware::board::Board;
+    use crate::firmware::log::tests::{dictionary, frame};
 
     fn core(number: u16, elf: &Path) -> Core {
         Core::new(number, Board::Versatilepb, elf, Vec::new())
@@ -190,7 +191,7 @@ mod tests {
             .add(&core(0, Path::new("no-such-image.elf")), &frames)
             .expect_err("no image");
         assert!(error.to_string().contains("no-such-image.elf"), "{error}");
-        let shell = crate::setup::program("sh").expect("a shell, which is an ELF, but has no log");
+        let shell = crate::platform::setup::program("sh").expect("a shell, which is an ELF, but has no log");
         let error = log.add(&core(0, &shell), &frames).expect_err("no log");
         assert!(error.to_string().contains("--log"), "{error}");
     }

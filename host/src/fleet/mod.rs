@@ -1,15 +1,20 @@
 //! The cores of a run: started together, watched, and ended when the run ends, however it ends.
 
+pub mod capture;
+mod core;
 mod log;
 mod native;
 mod qemu;
+pub mod session;
 
+pub use self::core::{Core, capture_of};
 pub use native::NativeFleet;
 pub(crate) use qemu::bound_to_this_process;
 #[cfg(test)]
 pub(crate) use qemu::tests::{cores, fake_qemu};
-pub use qemu::{Core, QemuFleet, capture_of, run_to_end, run_with_peer};
+pub use qemu::{QemuFleet, run_to_end, run_with_peer};
 
+use std::io;
 use std::path::Path;
 
 /// Times a core is started again at most.
@@ -31,7 +36,7 @@ pub enum FleetError {
     },
     /// What a core logs could not be read.
     #[error(transparent)]
-    Log(#[from] crate::log::LogError),
+    Log(#[from] crate::firmware::log::LogError),
     /// The emulator could not be started.
     #[error("core {core}: cannot start {program}: {cause}")]
     Start {
@@ -42,6 +47,12 @@ pub enum FleetError {
         /// What the system said.
         cause: std::io::Error,
     },
+}
+
+/// What becomes of an error at a core's file.
+fn unusable(path: &Path) -> impl FnOnce(io::Error) -> FleetError {
+    let path = path.to_owned();
+    move |cause| FleetError::File { path, cause }
 }
 
 /// The cores of a run. Dropping it ends them.

@@ -16,8 +16,8 @@ use tracer::scene::All;
 use wire::{Boot, Command, MAX_PAYLOAD, Name, ToCore};
 
 use super::FleetError;
-use crate::arithmetic::Arithmetic;
-use crate::collector::rest;
+use crate::firmware::arithmetic::Arithmetic;
+use crate::platform::wait;
 use crate::scene::Blob;
 
 /// How much cores stand back behind the thread that collects, which must empty its socket however many they are.
@@ -194,7 +194,7 @@ impl Network for Loopback {
 
     fn wait(&mut self, ticks: u32) {
         let asked = Duration::from_secs(1) * ticks / TICKS_PER_SECOND;
-        rest([self.socket.as_fd(), self.end.closed.as_fd()], asked);
+        wait([self.socket.as_fd(), self.end.closed.as_fd()], asked);
     }
 }
 

@@ -1,6 +1,5 @@
 //! Cores as QEMU processes.
 
-use std::ffi::OsString;
 use std::fs::{self, File};
 use std::io::{self, Read, Seek, SeekFrom};
 use std::os::unix::process::{CommandExt, ExitStatusExt};
@@ -8,10 +7,13 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Output, Stdio};
 use std::time::{Duration, Instant};
 
+use super::core::Core;
 use super::log::FleetLog;
-use super::{FleetError, LAST_LINES, RESTARTS};
-use crate::board::{self, Board};
-use crate::{interrupt, memory, setup};
+use super::{FleetError, LAST_LINES, RESTARTS, unusable};
+use crate::firmware::board::Board;
+use crate::platform::interrupt;
+use crate::platform::memory;
+use crate::platform::setup;
 
 /// Time between two looks at the processes' memory, which nobody can ask for once they have ended.
 const MEASURE_EVERY: Duration = Duration::from_millis(250);
@@ -29,62 +31,6 @@ pub fn run_to_end(qemu: &Path, board: Board, elf: &Path) -> io::Result<Output> {
 /// As [`run_to_end`], with a peer instead of a network: see [`Board::command_line_with_peer`].
 pub fn run_with_peer(qemu: &Path, board: Board, elf: &Path, core: u16, peer: u16) -> io::Result<Output> {
     interrupt::output(bound_to_this_process(qemu).args(board.command_line_with_peer(elf, core, peer)))
-}
-
-/// A core to be started.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Core {
-    /// Its number in the session.
-    pub number: u16,
-    /// The board it is on.
-    pub board: Board,
-    /// Its image.
-    pub elf: PathBuf,
-    /// Its boot block.
-    pub boot_block: Vec<u8>,
-    /// Whether its image has a log.
-    pub logs: bool,
-    /// Where its packets are recorded, if anywhere; those of later lives beside it, see [`capture_of`].
-    pub capture: Option<PathBuf>,
-    /// The TCP port on which it waits for a debugger before its first instruction, if for any.
-    pub debugger: Option<u16>,
-}
-
-impl Core {
-    /// A core that nobody looks into.
-    pub fn new(number: u16, board: Board, elf: &Path, boot_block: Vec<u8>) -> Self {
-        Self {
-            number,
-            board,
-            elf: elf.to_owned(),
-            boot_block,
-            logs: false,
-            capture: None,
-            debugger: None,
-        }
-    }
-
-    /// QEMU's arguments for it.
-    fn command_line(&self, files: &Files, restarts: usize) -> Vec<OsString> {
-        let mut words = self.board.command_line(&self.elf, Some(&files.boot));
-        if self.logs {
-            words.extend(self.board.log_to_stdout(&files.log));
-        }
-        if let Some(first) = &self.capture {
-            words.extend(board::capture_to(&capture_of(first, restarts)));
-        }
-        words.extend(self.debugger.into_iter().flat_map(board::wait_for_debugger));
-        words
-    }
-}
-
-/// The capture file of a core that has been started again so many times, if `first` is that of its first life. QEMU begins a file
-/// anew, and the earlier packets are worth keeping.
-pub fn capture_of(first: &Path, restarts: usize) -> PathBuf {
-    match restarts {
-        0 => first.to_owned(),
-        _ => first.with_extension(format!("{}.pcap", restarts + 1)),
-    }
 }
 
 /// One emulated core.
@@ -292,18 +238,12 @@ impl Drop for QemuFleet {
     }
 }
 
-/// What becomes of an error at a core's file.
-pub(super) fn unusable(path: &Path) -> impl FnOnce(io::Error) -> FleetError {
-    let path = path.to_owned();
-    move |cause| FleetError::File { path, cause }
-}
-
 /// Starts a core's process, whose console is added to its log, and its frames to those before.
 fn launch(qemu: &Path, core: &Core, files: &Files, restarts: usize) -> Result<Child, FleetError> {
     let end_of = |path: &Path| File::options().append(true).open(path).map_err(unusable(path));
     let output = end_of(if core.logs { &files.frames } else { &files.log })?;
     let mut command = bound_to_this_process(qemu);
-    command.args(core.command_line(files, restarts));
+    command.args(core.command_line(&files.boot, &files.log, restarts));
     command.stdin(Stdio::null());
     command.stdout(output).stderr(end_of(&files.log)?);
     // Ctrl-C is for this process, which then ends its cores in order.

@@ -248,7 +248,7 @@ mod tests {
     use super::*;
 
     fn cornell() -> Scene {
-        Scene::load(&crate::workspace::scene(None).unwrap()).unwrap()
+        Scene::load(&crate::platform::workspace::scene(None).unwrap()).unwrap()
     }
 
     #[test]

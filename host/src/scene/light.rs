@@ -5,11 +5,10 @@
 //! it is written is rendered with every emission times 2^exponent, and its picture divided by that. All scenes whose light
 //! fits have the exponent 0.
 
-use super::unit_size::USUAL;
 use super::{Material, Sphere};
 
 /// The most samples of one pixel in one unit.
-const UNIT_SAMPLES: f64 = USUAL as f64;
+pub(super) const UNIT_SAMPLES: u16 = 64;
 /// What a sum of one unit must stay below: 2^24, for 24:16.
 const SUM_LIMIT: f64 = 16_777_216.0;
 /// What an emission must stay below: 2^16, for 16:16 without a sign.
@@ -165,16 +164,16 @@ fn reflectance(sphere: &Sphere) -> [f64; 3] {
 /// (x e^(1 - x))^n at most (Chernoff). A path of fixed depth brings less: on_the_way / (1 - survival) at most.
 fn largest_sum(brightest: f64, on_the_way: f64, survival: f64) -> f64 {
     const BEFORE_ROULETTE: f64 = 6.0;
-    let sure = UNIT_SAMPLES * (brightest + BEFORE_ROULETTE * on_the_way);
+    let sure = f64::from(UNIT_SAMPLES) * (brightest + BEFORE_ROULETTE * on_the_way);
     if on_the_way == 0.0 || survival == 0.0 {
         return sure;
     }
     // x = 1 + ln x + CHANCE / n, from below; each step at least halves what is missing, as ln x is flat there.
     let mut x = 2.0;
     for _ in 0..64 {
-        x = 1.0 + f64::ln(x) + CHANCE / UNIT_SAMPLES;
+        x = 1.0 + f64::ln(x) + CHANCE / f64::from(UNIT_SAMPLES);
     }
-    sure + on_the_way * UNIT_SAMPLES * x / -survival.ln()
+    sure + on_the_way * f64::from(UNIT_SAMPLES) * x / -survival.ln()
 }
 
 /// The next number that two digits can say.
@@ -272,8 +271,8 @@ mod tests {
     #[test]
     fn the_largest_sum_is_above_the_mean_by_many_deviations() {
         for survival in [0.1, 0.5, 0.9, 0.999f64] {
-            let mean = UNIT_SAMPLES / (1.0 - survival);
-            let deviation = (UNIT_SAMPLES * survival).sqrt() / (1.0 - survival);
+            let mean = f64::from(UNIT_SAMPLES) / (1.0 - survival);
+            let deviation = (f64::from(UNIT_SAMPLES) * survival).sqrt() / (1.0 - survival);
             let found = largest_sum(1.0, 1.0, survival);
             assert!(found > mean + 9.0 * deviation, "{survival}: {found}, mean {mean}");
             assert!(found < 20.0 * mean, "{survival}: {found}, mean {mean}");

@@ -8,10 +8,9 @@ use tracer::profile::{Precise, Profile};
 use tracer::scene::All;
 use tracer::unit::{Plan, Termination, walk};
 
+use super::light::UNIT_SAMPLES;
 use super::{CompiledScene, Scene, compile};
 
-/// Samples per pixel in one unit, unless the whole picture has fewer or they take too long.
-pub(super) const USUAL: u16 = 64;
 /// The fewest: one for each sub-pixel.
 const FEWEST: u16 = 4;
 /// Tests of a ray against a sphere that a pixel of a unit may cost. With 256 spheres that is 7 rays a sample, with one 186; the
@@ -27,7 +26,7 @@ const PILOT: (u16, u16) = (16, 12);
 /// The unit's cut decides which random numbers a sample gets, so this is part of what a picture is a function of: it must be
 /// the same on every host, and 64 wherever that will do.
 pub fn samples_per_unit(scene: &Scene, spp: u32, termination: Termination) -> u16 {
-    let usual = USUAL.min(u16::try_from(spp).unwrap_or(USUAL));
+    let usual = UNIT_SAMPLES.min(u16::try_from(spp).unwrap_or(UNIT_SAMPLES));
     let spheres = scene.spheres.len() as u64;
     let mut samples = usual;
     let pilot = Pilot::new(scene, termination);

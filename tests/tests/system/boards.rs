@@ -4,11 +4,11 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
 use clap::Parser;
-use host::arithmetic::Arithmetic;
-use host::board::Board;
-use host::job::options::{RenderOptions, Size};
-use host::job::render;
-use host::samples::{Series, measure};
+use host::bench::samples::{Series, measure};
+use host::firmware::arithmetic::Arithmetic;
+use host::firmware::board::Board;
+use host::render::options::{RenderOptions, Size};
+use host::render::render;
 use host::scene::Scene;
 use tracer::profile::Precise;
 use whole_system::{film, plan, repository};
@@ -69,10 +69,10 @@ fn what_a_sample_costs_is_told_for_every_board_and_profile() {
         no_install: true,
     };
     let rows = measure(&series, &AtomicBool::new(false)).unwrap_or_else(|error| panic!("{error}"));
-    println!("{}", host::samples::table(&rows));
+    println!("{}", host::bench::samples::table(&rows));
     assert_eq!(rows.len(), 2 * 2 * Board::ALL.len());
     let cost = |profile: Arithmetic, board| {
-        let of = |row: &&host::samples::Row| {
+        let of = |row: &&host::bench::samples::Row| {
             (row.profile.as_str(), row.termination.as_str(), row.board) == (profile.name(), "roulette", board)
         };
         rows.iter()

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use host::board::Board;
+use host::firmware::board::Board;
 use whole_system::{program, repository, said, xtask};
 
 /// 48 units of work: a moment.

@@ -8,8 +8,8 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use clap::Parser;
-use host::job::options::RenderOptions;
-use host::job::{Finished, JobError, render};
+use host::render::options::RenderOptions;
+use host::render::{Finished, RenderError, render};
 use host::scene::{MAX_SPHERES, Scene};
 use serde_json::Value;
 use tempfile::TempDir;
@@ -25,7 +25,7 @@ struct Flags {
 /// A render's folder, and how the render ended.
 struct Done {
     out: TempDir,
-    end: Result<Finished, JobError>,
+    end: Result<Finished, RenderError>,
 }
 
 impl Done {

@@ -4,8 +4,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Output;
 
-use host::arithmetic::Arithmetic;
-use host::board::{Board, DTCM_BUDGET, ITCM_BUDGET};
+use host::firmware::arithmetic::Arithmetic;
+use host::firmware::board::{Board, DTCM_BUDGET, ITCM_BUDGET};
 use host::firmware::{self, Recipe, build};
 use host::fleet::run_to_end;
 use object::{Object, ObjectSymbol};

@@ -5,12 +5,12 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 use clap::Parser;
-use host::arithmetic::Arithmetic;
-use host::board::{Board, ITCM_BUDGET};
+use host::firmware::Level;
+use host::firmware::arithmetic::Arithmetic;
+use host::firmware::board::{Board, ITCM_BUDGET};
 use host::firmware::{Image, Recipe, build};
-use host::job::options::RenderOptions;
-use host::job::render;
-use host::log::Level;
+use host::render::options::RenderOptions;
+use host::render::render;
 use object::{Object, ObjectSection, ObjectSymbol};
 use serde_json::Value;
 use tracer::profile::Precise;

@@ -10,9 +10,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::Duration;
 
-use host::board::Board;
+use host::bench::operations::bench::measure;
+use host::firmware::board::Board;
 use host::fleet::{run_to_end, run_with_peer};
-use host::operations::bench::measure;
 use operations::Group;
 use whole_system::{probe, qemu, toolchain};
 

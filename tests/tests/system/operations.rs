@@ -5,11 +5,11 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::sync::OnceLock;
 
-use host::board::Board;
-use host::operations::anchors::ANCHORS;
-use host::operations::bench::{Measurement, measure};
-use host::operations::table::table;
-use host::operations::{Row, readme, with_errors};
+use host::bench::operations::anchors::ANCHORS;
+use host::bench::operations::bench::{Measurement, measure};
+use host::bench::operations::table::table;
+use host::bench::operations::{Row, readme, with_errors};
+use host::firmware::board::Board;
 use operations::{Group, Maker};
 use whole_system::{qemu, toolchain};
 

@@ -4,7 +4,7 @@ use std::fs::{self, File};
 use std::io::pipe;
 use std::process::{Command, Output, Stdio};
 
-use host::console::CLOSED_PIPE;
+use host::platform::console::CLOSED_PIPE;
 use whole_system::{program, said, xtask};
 
 use crate::processes::wait_for;

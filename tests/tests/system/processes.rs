@@ -6,8 +6,8 @@ use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-use host::arithmetic::Arithmetic;
-use host::board::Board;
+use host::firmware::arithmetic::Arithmetic;
+use host::firmware::board::Board;
 use host::firmware::{self, Recipe};
 use serde_json::Value;
 use tempfile::TempDir;

@@ -8,9 +8,9 @@ use std::process::Command;
 use std::sync::atomic::AtomicBool;
 
 use clap::Parser;
-use host::board::Board;
-use host::capture::Tally;
-use host::job::{JobError, TraceOptions, trace};
+use host::firmware::board::Board;
+use host::fleet::capture::Tally;
+use host::render::{RenderError, TraceOptions, trace};
 use serde_json::Value;
 use tempfile::TempDir;
 use whole_system::{oddly_named_folder, repository};
@@ -205,10 +205,10 @@ fn the_recorded_packets_are_the_protocol_s_and_all_there_on_every_board() {
 fn what_cannot_be_recorded_is_refused() {
     let out = tempfile::tempdir().unwrap();
     let end = |flags: &str| trace(&options(out.path(), flags), &AtomicBool::new(false));
-    assert!(matches!(end("--backend native"), Err(JobError::NoNetwork)));
+    assert!(matches!(end("--backend native"), Err(RenderError::NoNetwork)));
     let error = end("--cores 1").unwrap_err();
     assert!(
-        matches!(error, JobError::NoSuchCore { core: 1, cores: 1 }),
+        matches!(error, RenderError::NoSuchCore { core: 1, cores: 1 }),
         "{error}"
     );
 }

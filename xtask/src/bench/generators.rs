@@ -4,15 +4,15 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::Context;
-use host::console::{note, say};
-use host::generators::dieharder::Assessment;
-use host::generators::judgement::{self, Judgement, Streams};
-use host::generators::low_bits::{Effect, Pictures};
-use host::generators::uniformity::{FALSE_ALARM, Power, SURE, Uniformity};
-use host::reference::{self, cache};
+use host::bench::generators::dieharder::Assessment;
+use host::bench::generators::judgement::{self, Judgement, Streams};
+use host::bench::generators::low_bits::{Effect, Pictures};
+use host::bench::generators::uniformity::{FALSE_ALARM, Power, SURE, Uniformity};
+use host::oracle::reference::{self, cache};
+use host::platform::console::{note, say};
+use host::platform::setup::{self, Wanted};
+use host::platform::workspace;
 use host::scene::Scene;
-use host::setup::{self, Wanted};
-use host::workspace;
 use serde::Serialize;
 
 use crate::SetUp;

@@ -4,10 +4,10 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::{Context, ensure};
-use host::board::Board;
-use host::console::say;
-use host::operations::{self, plot, readme};
-use host::setup::{self, Wanted};
+use host::bench::operations::{self, plot, readme};
+use host::firmware::board::Board;
+use host::platform::console::say;
+use host::platform::setup::{self, Wanted};
 
 use crate::SetUp;
 

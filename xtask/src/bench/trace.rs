@@ -5,11 +5,11 @@ use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 
 use anyhow::Context;
-use host::board::Board;
-use host::console::say;
-use host::job::options::Size;
-use host::samples::{self, Series};
-use host::workspace;
+use host::bench::samples::{self, Series};
+use host::firmware::board::Board;
+use host::platform::console::say;
+use host::platform::workspace;
+use host::render::options::Size;
 
 use crate::SetUp;
 
@@ -25,10 +25,10 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "WxH", default_value = "64x48")]
     size: Size,
     /// Samples per pixel in all, a multiple of 4
-    #[arg(long, value_name = "N", default_value = "64", value_parser = host::job::options::samples_per_pixel)]
+    #[arg(long, value_name = "N", default_value = "64", value_parser = host::render::options::samples_per_pixel)]
     spp: u32,
     /// Samples per pixel of the reference in double precision, a multiple of 4
-    #[arg(long, value_name = "N", default_value = "512", value_parser = host::job::options::samples_per_pixel)]
+    #[arg(long, value_name = "N", default_value = "512", value_parser = host::render::options::samples_per_pixel)]
     reference_spp: u32,
     /// Number of cores
     #[arg(long, value_name = "N", default_value = "2", value_parser = clap::value_parser!(u16).range(1..=1024))]

@@ -1,0 +1,5 @@
+//! Prices: of the arithmetic's operations, of whole samples, and the judgement of the random generators.
+
+pub mod generators;
+pub mod operations;
+pub mod samples;

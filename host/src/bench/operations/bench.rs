@@ -1,0 +1,241 @@
+//! Prices and transcripts, taken on an emulated core.
+
+use std::path::{Path, PathBuf};
+use std::{fs, io};
+
+use object::{Object, ObjectSection};
+use operations::Group;
+use operations::price::{CASES, ROUNDS};
+use rayon::prelude::*;
+
+use super::reach::{Code, Reach};
+use super::{Entry, entries};
+use crate::firmware::board::{Board, INSTRUCTIONS_PER_TICK};
+use crate::firmware::{self, FirmwareError};
+use crate::fleet;
+use crate::platform::setup::Toolchain;
+
+/// A row as a core has measured it.
+#[derive(Clone, Debug)]
+pub struct Measurement {
+    /// The row.
+    pub entry: Entry,
+    /// The board.
+    pub board: Board,
+    /// Instructions in line.
+    pub instructions: f64,
+    /// Instructions as a called function.
+    pub called_instructions: f64,
+    /// The called function.
+    pub reach: Reach,
+    /// The image.
+    pub elf: PathBuf,
+    /// The version of the compiler that made it.
+    pub compiler: String,
+}
+
+/// Why there are no prices.
+#[derive(Debug, thiserror::Error)]
+pub enum BenchError {
+    /// There is no image.
+    #[error(transparent)]
+    Firmware(#[from] FirmwareError),
+    /// The emulator could not be started.
+    #[error("cannot start {}: {cause}", program.display())]
+    Start {
+        /// The program.
+        program: PathBuf,
+        /// What the system said.
+        cause: io::Error,
+    },
+    /// The core did not do its work.
+    #[error("{image}: the core ended with {status}, and said:\n{said}")]
+    Core {
+        /// The image.
+        image: String,
+        /// How QEMU ended.
+        status: String,
+        /// The console.
+        said: String,
+    },
+    /// The image's file cannot be read as one.
+    #[error("{}: {cause}; remove the file, and it is built anew", path.display())]
+    Elf {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        cause: String,
+    },
+    /// Core and host differ.
+    #[error(
+        "{operation}, {variant}: the core's answers are not the host's (transcripts {core:016x} and {host:016x} of \
+         {cases} cases); one of the two compilers, or the emulator, computes something else"
+    )]
+    Transcript {
+        /// What is done.
+        operation: &'static str,
+        /// By which function.
+        variant: String,
+        /// The core's hash.
+        core: u64,
+        /// The host's hash.
+        host: u64,
+        /// Cases in it.
+        cases: u32,
+    },
+}
+
+/// Builds and runs a board's images of these groups, and compares every transcript with the host's.
+pub fn measure(
+    toolchain: &Toolchain,
+    qemu: &Path,
+    board: Board,
+    groups: &[Group],
+) -> Result<Vec<Measurement>, BenchError> {
+    let names: Vec<String> = groups.iter().map(|&group| image_name(group)).collect();
+    let images = firmware::build_examples(toolchain, board, &names, None)?;
+    let pairs: Vec<(Group, PathBuf)> = groups.iter().copied().zip(images).collect();
+    let groups: Vec<Vec<Measurement>> = pairs
+        .into_par_iter()
+        .map(|(group, elf)| measure_group(qemu, board, group, &elf))
+        .collect::<Result<_, _>>()?;
+    Ok(groups.concat())
+}
+
+/// The name of a group's image.
+pub fn image_name(group: Group) -> String {
+    format!("prices_{}", group.name())
+}
+
+fn measure_group(
+    qemu: &Path,
+    board: Board,
+    group: Group,
+    elf: &Path,
+) -> Result<Vec<Measurement>, BenchError> {
+    let output = fleet::run_to_end(qemu, board, elf).map_err(|cause| BenchError::Start {
+        program: qemu.to_owned(),
+        cause,
+    })?;
+    let said = String::from_utf8_lossy(&output.stdout);
+    let failed = || BenchError::Core {
+        image: image_name(group),
+        status: output.status.to_string(),
+        said: format!("{said}{}", String::from_utf8_lossy(&output.stderr)),
+    };
+    let lines: Vec<Line> = said.lines().filter_map(Line::parse).collect();
+    let entries = entries(group);
+    if !output.status.success() || lines.len() != entries.len() {
+        return Err(failed());
+    }
+    let damaged = |cause: String| BenchError::Elf {
+        path: elf.to_owned(),
+        cause,
+    };
+    let bytes = fs::read(elf).map_err(|cause| damaged(cause.to_string()))?;
+    let code = Code::of(&bytes).map_err(damaged)?;
+    let compiler =
+        compiler_of(&bytes).ok_or_else(|| damaged("it does not say which rustc made it".to_owned()))?;
+    let rows = entries.into_par_iter().zip(lines);
+    rows.map(|(entry, line)| {
+        compare(&entry, &line)?;
+        let reach = code.from(line.address.into()).ok_or_else(failed)?;
+        Ok(Measurement {
+            entry,
+            board,
+            instructions: line.instructions(line.inline),
+            called_instructions: line.instructions(line.called),
+            reach,
+            elf: elf.to_owned(),
+            compiler: compiler.clone(),
+        })
+    })
+    .collect()
+}
+
+/// From the comments that compilers and linkers leave: `rustc version 1.96.0 (ac68faa20 2026-05-25)`.
+fn compiler_of(elf: &[u8]) -> Option<String> {
+    let file = object::File::parse(elf).ok()?;
+    let comments = file.section_by_name(".comment")?.data().ok()?;
+    let rustc = comments
+        .split(|&byte| byte == 0)
+        .filter_map(|comment| str::from_utf8(comment).ok()?.strip_prefix("rustc version "))
+        .next()?;
+    rustc.split(' ').next().map(str::to_owned)
+}
+
+fn compare(entry: &Entry, line: &Line) -> Result<(), BenchError> {
+    let host = (entry.transcript)(line.cases);
+    if host == line.transcript {
+        return Ok(());
+    }
+    Err(BenchError::Transcript {
+        operation: entry.operation,
+        variant: entry.name(),
+        core: line.transcript,
+        host,
+        cases: line.cases,
+    })
+}
+
+/// A row's line on the console: `row` and eight words in hexadecimal.
+#[derive(Clone, Copy, Debug)]
+struct Line {
+    cases: u32,
+    baseline: u32,
+    inline: u32,
+    called: u32,
+    transcript: u64,
+    address: u32,
+}
+
+impl Line {
+    fn parse(text: &str) -> Option<Self> {
+        let words = text.trim().strip_prefix("row ")?;
+        let words: Vec<u32> = words
+            .split(' ')
+            .map(|word| u32::from_str_radix(word, 16))
+            .collect::<Result<_, _>>()
+            .ok()?;
+        let [_row, cases, baseline, inline, called, high, low, address] = words.try_into().ok()?;
+        Some(Self {
+            cases,
+            baseline,
+            inline,
+            called,
+            transcript: u64::from(high) << 32 | u64::from(low),
+            address,
+        })
+    }
+
+    /// Mean instructions of an operation in a loop that took so many ticks. Every round does the same, so the mean is a whole
+    /// number of instructions over the number of cases: what the clock's ticks blur is less than half of that.
+    fn instructions(&self, ticks: u32) -> f64 {
+        let ticks = f64::from(ticks) - f64::from(self.baseline);
+        (ticks * INSTRUCTIONS_PER_TICK / f64::from(ROUNDS)).round() / CASES as f64
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_of_the_console_is_a_price() {
+        let instructions = 3 * ROUNDS * CASES as u32;
+        // As many ticks as end within them, and one more, which the clock may have been short of.
+        let ticks = 0x10 + (f64::from(instructions) / INSTRUCTIONS_PER_TICK) as u32 + 1;
+        let text =
+            format!("row 00000002 0000000a 00000010 {ticks:08x} 00000010 00000001 00000002 00001a14\r");
+        let line = Line::parse(&text).expect("a line");
+        assert_eq!(
+            (line.cases, line.transcript, line.address),
+            (10, 1 << 32 | 2, 0x1a14)
+        );
+        assert_eq!(
+            (line.instructions(line.inline), line.instructions(line.called)),
+            (3.0, 0.0)
+        );
+        assert!(Line::parse("panic at somewhere").is_none() && Line::parse("row 00000002").is_none());
+    }
+}

@@ -1,0 +1,201 @@
+//! What a whole sample costs on a core, and how wrong it is: the same small picture by every board, profile and way to end a path.
+
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+
+use serde::Serialize;
+use tracer::unit::Termination;
+
+use crate::firmware::arithmetic::Arithmetic;
+use crate::firmware::board::Board;
+use crate::platform::interrupt::LastAct;
+use crate::render::options::{Backend, End, PictureOptions, Pixels, RenderOptions, Size};
+use crate::render::report::Report;
+use crate::render::{self, RenderError};
+
+/// The picture that is rendered again and again.
+#[derive(Clone, Debug)]
+pub struct Series {
+    /// The scene's file.
+    pub scene: PathBuf,
+    /// The boards.
+    pub boards: Vec<Board>,
+    /// The picture's size.
+    pub size: Size,
+    /// Samples per pixel.
+    pub spp: u32,
+    /// Samples per pixel of the reference.
+    pub reference_spp: u32,
+    /// Cores.
+    pub cores: u16,
+    /// Whether set-up must leave the machine as it is.
+    pub no_install: bool,
+}
+
+/// Ways to end a path: by chance, and after as many surfaces as chance always leaves.
+const TERMINATIONS: [Termination; 2] = [Termination::Roulette, Termination::Depth(5)];
+
+/// A row of the list.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Row {
+    /// The board.
+    pub board: Board,
+    /// The arithmetic.
+    pub profile: String,
+    /// The scene.
+    pub scene: String,
+    /// `roulette` or `depth:N`.
+    pub termination: String,
+    /// Bytes of code, constants and first values of the image.
+    pub itcm_bytes: Option<u64>,
+    /// Instructions.
+    pub instructions_per_sample: Option<f64>,
+    /// Cycles; nobody has counted them yet.
+    pub cycles_per_sample: Option<f64>,
+    /// Rays.
+    pub rays_per_sample: Option<f64>,
+    /// (mean - reference mean) / reference mean, noise and all.
+    pub bias: Option<f64>,
+    /// Upper bound of the standard error of `bias`.
+    pub bias_standard_error: Option<f64>,
+    /// The same against the same paths in double precision: of arithmetic alone.
+    pub lockstep_bias: Option<f64>,
+    /// Upper bound of the standard error of `lockstep_bias`.
+    pub lockstep_bias_standard_error: Option<f64>,
+    /// Noise-corrected root of the mean squared error; 0 where noise hides it.
+    pub rmse: Option<f64>,
+    /// The largest `rmse` that the noise leaves room for: two standard errors up.
+    pub rmse_at_most: Option<f64>,
+    /// The picture, which is the same on every board.
+    pub image_sha256: String,
+}
+
+/// Renders the series, and compares the boards' pictures.
+pub fn measure(series: &Series, interrupted: &AtomicBool) -> Result<Vec<Row>, SeriesError> {
+    let folder = tempfile::tempdir().map_err(SeriesError::Folder)?;
+    let place = folder.path().to_owned();
+    // Whatever of it stays, it is in a folder for what may go away.
+    let _removes = LastAct::new(move || drop(std::fs::remove_dir_all(&place)));
+    let mut rows: Vec<Row> = Vec::new();
+    for (profile, end) in kinds() {
+        let first = rows.len();
+        for &board in &series.boards {
+            let options = series.options(board, profile, end, folder.path());
+            rows.push(Row::new(board, &render::render(&options, interrupted)?.report));
+        }
+        let others = rows[first..].windows(2);
+        if let Some(pair) = others
+            .into_iter()
+            .find(|pair| pair[0].image_sha256 != pair[1].image_sha256)
+        {
+            return Err(SeriesError::Picture(Box::new([pair[0].clone(), pair[1].clone()])));
+        }
+    }
+    Ok(rows)
+}
+
+fn kinds() -> impl Iterator<Item = (Arithmetic, Termination)> {
+    Arithmetic::ALL
+        .into_iter()
+        .flat_map(|profile| TERMINATIONS.map(|end| (profile, end)))
+}
+
+/// Why there is no list.
+#[derive(Debug, thiserror::Error)]
+pub enum SeriesError {
+    /// There is no folder for the pictures.
+    #[error("cannot make a folder for temporary files: {0}; set TMPDIR to one with room")]
+    Folder(io::Error),
+    /// A render failed.
+    #[error(transparent)]
+    Render(#[from] RenderError),
+    /// Two boards disagree.
+    #[error(
+        "profile {} with {} gives another picture on {} than on {}: one of the two computes something else; compare them with \
+         `cargo xtask bench ops --board`",
+        .0[0].profile, .0[0].termination, .0[1].board, .0[0].board
+    )]
+    Picture(Box<[Row; 2]>),
+}
+
+impl Series {
+    fn options(&self, board: Board, profile: Arithmetic, end: Termination, out: &Path) -> RenderOptions {
+        RenderOptions {
+            picture: PictureOptions {
+                scene: Some(self.scene.clone()),
+                size: self.size,
+                spp: self.spp,
+                cores: self.cores,
+                profile,
+                epsilon: None,
+                termination: End(end),
+                pixels: Pixels::Leased,
+                seed: 1,
+                reference: None,
+                reference_spp: self.reference_spp,
+                patience: None,
+                reference_cache: None,
+                out: Some(out.to_owned()),
+            },
+            boards: vec![board],
+            backend: Backend::Qemu,
+            log: None,
+            port: None,
+            no_install: self.no_install,
+        }
+    }
+}
+
+impl Row {
+    fn new(board: Board, report: &Report) -> Self {
+        let lockstep = report.lockstep_error;
+        Self {
+            board,
+            profile: report.profile.clone(),
+            scene: report.scene.clone(),
+            termination: report.termination.clone(),
+            itcm_bytes: report.images.first().map(|image| image.size.itcm_bytes),
+            instructions_per_sample: report.cost.instructions_per_sample,
+            cycles_per_sample: report.cost.cycles_per_sample,
+            rays_per_sample: report.cost.rays_per_sample,
+            bias: report.error.bias,
+            bias_standard_error: report.error.bias_standard_error,
+            lockstep_bias: lockstep.and_then(|lockstep| lockstep.bias),
+            lockstep_bias_standard_error: lockstep.and_then(|lockstep| lockstep.bias_standard_error),
+            rmse: report.error.rmse,
+            rmse_at_most: report.error.rmse_at_most,
+            image_sha256: report.image_sha256.clone(),
+        }
+    }
+}
+
+/// The list for people, boards side by side, what is behind a `±` being one standard error at most.
+pub fn table(rows: &[Row]) -> String {
+    let mut lines = vec![format!(
+        "{:8} {:10} {:12} {:>8} {:>15} {:>8} {:>18} {:>18} {:>9}",
+        "profile", "paths", "board", "code", "instructions", "rays", "bias", "arithmetic bias", "rmse <="
+    )];
+    let percent = |share: Option<f64>, error: Option<f64>| match (share, error) {
+        (Some(share), Some(error)) => format!("{:+.3} ± {:.3} %", 100.0 * share, 100.0 * error),
+        (Some(share), None) => format!("{:+.3} %", 100.0 * share),
+        (None, _) => "-".to_owned(),
+    };
+    let figure =
+        |value: Option<f64>, digits| value.map_or("-".to_owned(), |value| format!("{value:.digits$}"));
+    lines.extend(rows.iter().map(|row| {
+        format!(
+            "{:8} {:10} {:12} {:>8} {:>15} {:>8} {:>18} {:>18} {:>9}",
+            row.profile,
+            row.termination,
+            row.board,
+            row.itcm_bytes.map_or("-".to_owned(), |bytes| bytes.to_string()),
+            figure(row.instructions_per_sample, 1),
+            figure(row.rays_per_sample, 2),
+            percent(row.bias, row.bias_standard_error),
+            percent(row.lockstep_bias, row.lockstep_bias_standard_error),
+            figure(row.rmse_at_most, 5),
+        )
+    }));
+    lines.join("\n")
+}

@@ -1,0 +1,104 @@
+//! What an image is built for.
+
+use std::fmt;
+
+use tracer::scene::Capabilities;
+
+use super::arithmetic::Arithmetic;
+use super::board::Board;
+
+/// How grave a line is; a core with a log says all that is at least as grave as the level it was built for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, clap::ValueEnum)]
+pub enum Level {
+    /// Why a core ends.
+    Error,
+    /// What should not happen: rejected packets, refused leases.
+    Warn,
+    /// The start and the end of a core.
+    Info,
+    /// A core's work: leases and units.
+    Debug,
+    /// Everything, each packet included.
+    Trace,
+}
+
+impl Level {
+    /// The name used by `--log` and by `DEFMT_LOG`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Error => "error",
+            Self::Warn => "warn",
+            Self::Info => "info",
+            Self::Debug => "debug",
+            Self::Trace => "trace",
+        }
+    }
+}
+
+impl fmt::Display for Level {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+/// What an image is to be built for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Recipe {
+    /// The arithmetic.
+    pub profile: Arithmetic,
+    /// What its scene, camera and integrator need.
+    pub needs: Capabilities,
+    /// What it logs; none for an image without a log, the one that is measured.
+    pub log: Option<Level>,
+}
+
+impl Recipe {
+    /// The words of `TRACER_NEEDS`.
+    pub(super) fn words(&self) -> String {
+        self.needs.to_string()
+    }
+
+    /// The recipe in words.
+    pub fn describe(&self) -> String {
+        let log = self.log.map(|level| format!(", logging {level}"));
+        let words = self.words().replace(',', ", ");
+        format!("profile {} and {words}{}", self.profile, log.unwrap_or_default())
+    }
+
+    /// The image's file name.
+    pub(super) fn file_name(&self, board: Board) -> String {
+        let log = self.log.map(|level| format!("-log-{level}"));
+        let words = self.words().replace(',', "-");
+        format!("{board}-{}-{words}{}.elf", self.profile, log.unwrap_or_default())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use tracer::scene::Capability;
+
+    use super::*;
+
+    #[test]
+    fn an_image_is_named_after_what_it_is_for() {
+        let needs = Capabilities::of(&[Capability::Diffuse, Capability::Glass, Capability::Roulette]);
+        let recipe = Recipe {
+            profile: Arithmetic::Paper,
+            needs,
+            log: None,
+        };
+        assert_eq!(recipe.words(), "diffuse,glass,roulette");
+        assert_eq!(
+            recipe.file_name(Board::Mps2An385),
+            "mps2-an385-paper-diffuse-glass-roulette.elf"
+        );
+        let logging = Recipe {
+            log: Some(Level::Debug),
+            ..recipe
+        };
+        assert_eq!(
+            logging.file_name(Board::Versatilepb),
+            "versatilepb-paper-diffuse-glass-roulette-log-debug.elf"
+        );
+    }
+}

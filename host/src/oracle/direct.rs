@@ -1,0 +1,57 @@
+//! A picture without a fleet: every unit in this process, on all of its cores.
+
+use fixedmath::U48F16;
+use rayon::prelude::*;
+use tracer::camera::Camera;
+use tracer::integrator::{Integrator, Path};
+use tracer::profile::Profile;
+use tracer::scene::All;
+use tracer::unit::{Plan, SPAN, Sums, render};
+
+use crate::image::film::Film;
+use crate::image::picture::Estimate;
+use crate::oracle::lockstep;
+use crate::oracle::noise;
+use crate::scene::CompiledScene;
+
+/// The film that any fleet must end with.
+///
+/// # Panics
+/// If the plan has more units than there are ids.
+pub fn film<P: Profile>(compiled: &CompiledScene, plan: &Plan) -> Film {
+    let units = plan.units().expect("unit ids fit 32 bits");
+    let (scene, path) = (compiled.view(), Path::<P, All>::new(plan));
+    let camera = Camera::new(&compiled.camera);
+    let render_unit = |id| {
+        let mut sums = [[U48F16::ZERO; 3]; SPAN];
+        render(&path, &scene, &camera, plan, id, &mut sums);
+        sums
+    };
+    let sums: Vec<Sums> = (0..units).into_par_iter().map(render_unit).collect();
+    let mut film = Film::new(plan.width, plan.height).with_exponent(compiled.exponent);
+    for (id, sums) in (0..units).zip(&sums) {
+        let extent = plan.extent(id);
+        let span: Vec<[u64; 3]> = sums[..usize::from(extent.pixels)]
+            .iter()
+            .map(|pixel| pixel.map(U48F16::to_bits))
+            .collect();
+        film.add(extent.first_pixel, extent.samples.into(), &span)
+            .expect("units lie within the film");
+    }
+    film
+}
+
+/// The film's picture with the variance of its samples, and the lockstep oracle's.
+///
+/// # Panics
+/// If the plan has more units than there are ids.
+pub fn estimate<P: Profile>(compiled: &CompiledScene, plan: &Plan) -> (Estimate, Estimate) {
+    let lockstep = lockstep::render::<P>(compiled, plan, |_| ());
+    let picture = film::<P>(compiled, plan).picture();
+    let fixed = Estimate {
+        variance: noise::variance::<P>(compiled, plan, &picture, &lockstep, |_| ()),
+        picture,
+        spp: lockstep.spp,
+    };
+    (fixed, lockstep)
+}

@@ -1,0 +1,8 @@
+//! What a picture should be, in double precision, and how far from it one is.
+
+pub mod compare;
+pub mod difference;
+pub mod direct;
+pub mod lockstep;
+pub mod noise;
+pub mod reference;

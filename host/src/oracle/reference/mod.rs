@@ -1,0 +1,153 @@
+//! The reference: an independent path tracer in double precision, on all of the host's cores.
+//!
+//! It tells what the picture *should* look like, and how sure it is of every pixel. Each row of the picture draws from a
+//! stream of its own (the generator's `jump` puts 2^128 numbers between them), so that the same seed gives the same
+//! picture on any number of threads. [`cache`] keeps results.
+
+pub mod cache;
+mod path;
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use rand_xoshiro::Xoshiro256PlusPlus;
+use rand_xoshiro::rand_core::SeedableRng;
+use rayon::prelude::*;
+
+use crate::image::picture::{Estimate, Picture};
+use crate::scene::Scene;
+
+/// When a path ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Termination {
+    /// From the sixth surface on, with a probability of one minus the surface's strongest reflectance.
+    Roulette,
+    /// At this many surfaces.
+    Depth(u8),
+}
+
+/// What to render.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Job {
+    /// Width in pixels.
+    pub width: u16,
+    /// Height in pixels.
+    pub height: u16,
+    /// Samples per pixel, a multiple of 4: the 2x2 sub-pixels.
+    pub spp: u32,
+    /// When a path ends.
+    pub termination: Termination,
+    /// Seed of the random numbers.
+    pub seed: u64,
+}
+
+impl Job {
+    /// Samples of the whole picture.
+    pub fn samples(&self) -> u64 {
+        u64::from(self.width) * u64::from(self.height) * u64::from(self.spp)
+    }
+}
+
+/// Renders `scene`; `progress` hears how many samples are done, from any thread, once for every row.
+///
+/// The estimate always has a variance. With 4 samples per pixel it is that of the four sub-pixels taken together.
+///
+/// # Panics
+/// If `job.spp` is not a multiple of 4 above zero.
+pub fn render(scene: &Scene, job: &Job, progress: impl Fn(u64) + Sync) -> Estimate {
+    assert!(
+        job.spp > 0 && job.spp.is_multiple_of(4),
+        "{} samples per pixel: must be a multiple of 4",
+        job.spp
+    );
+    let world = path::World::new(scene);
+    let view = path::View::new(&scene.camera, job.width, job.height);
+    let done = AtomicU64::new(0);
+    let mut stream = Xoshiro256PlusPlus::seed_from_u64(job.seed);
+    let streams: Vec<_> = (0..job.height)
+        .map(|_| {
+            let row = stream.clone();
+            stream.jump();
+            row
+        })
+        .collect();
+    let pixels: Vec<([f64; 3], [f64; 3])> = (0..job.height)
+        .into_par_iter()
+        .zip(streams)
+        .flat_map_iter(|(row, mut random)| {
+            let pixels: Vec<_> = (0..job.width)
+                .map(|column| pixel(&world, &view, [column, row], job, &mut random))
+                .collect();
+            let samples = u64::from(job.width) * u64::from(job.spp);
+            progress(done.fetch_add(samples, Ordering::Relaxed) + samples);
+            pixels
+        })
+        .collect();
+    let (means, variances) = pixels
+        .into_iter()
+        .map(|(mean, variance)| (Some(mean), variance))
+        .unzip();
+    Estimate {
+        picture: Picture::new(job.width, job.height, means),
+        variance: Some(variances),
+        spp: Some(job.spp),
+    }
+}
+
+/// Mean and variance of the mean of one pixel.
+fn pixel(
+    world: &path::World,
+    view: &path::View,
+    place: [u16; 2],
+    job: &Job,
+    random: &mut Xoshiro256PlusPlus,
+) -> ([f64; 3], [f64; 3]) {
+    let per_sub_pixel = job.spp / 4;
+    let mut strata = [Moments::default(); 4];
+    for (moments, sub_pixel) in strata.iter_mut().zip([[0, 0], [1, 0], [0, 1], [1, 1]]) {
+        for _ in 0..per_sub_pixel {
+            moments.add(world.sample(view, place, sub_pixel, job.termination, random));
+        }
+    }
+    let mean = [0, 1, 2].map(|channel| strata.iter().map(|stratum| stratum.mean[channel]).sum::<f64>() / 4.0);
+    // The sub-pixels are strata of equal weight: the variances of their means add up, over 4 squared.
+    let variance = if per_sub_pixel > 1 {
+        [0, 1, 2].map(|channel| {
+            strata
+                .iter()
+                .map(|stratum| stratum.variance_of_mean(channel))
+                .sum::<f64>()
+                / 16.0
+        })
+    } else {
+        let mut all = Moments::default();
+        strata.iter().for_each(|stratum| all.add(stratum.mean));
+        [0, 1, 2].map(|channel| all.variance_of_mean(channel))
+    };
+    (mean, variance)
+}
+
+/// Running mean and sum of squared deviations (Welford's).
+#[derive(Clone, Copy, Default)]
+struct Moments {
+    count: f64,
+    mean: [f64; 3],
+    squares: [f64; 3],
+}
+
+impl Moments {
+    fn add(&mut self, sample: [f64; 3]) {
+        self.count += 1.0;
+        for ((mean, squares), value) in self.mean.iter_mut().zip(&mut self.squares).zip(sample) {
+            let before = value - *mean;
+            *mean += before / self.count;
+            *squares += before * (value - *mean);
+        }
+    }
+
+    fn variance_of_mean(&self, channel: usize) -> f64 {
+        self.squares[channel] / (self.count - 1.0) / self.count
+    }
+}
+
+#[cfg(test)]
+mod tests;

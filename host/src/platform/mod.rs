@@ -1,0 +1,11 @@
+//! The machine under the host's programs: its files, processes and terminal, and the programs that must be installed.
+
+pub mod console;
+pub mod file;
+pub mod interrupt;
+pub mod memory;
+pub mod setup;
+mod wait;
+pub mod workspace;
+
+pub(crate) use wait::wait;
