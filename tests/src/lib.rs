@@ -145,6 +145,8 @@ pub fn program(name: &str) -> PathBuf {
             "--quiet",
             "--release",
             "--package",
+            "commands",
+            "--package",
             "xtask",
             "--package",
             "host",
@@ -160,9 +162,9 @@ pub fn program(name: &str) -> PathBuf {
     folder.join(name)
 }
 
-/// A command of the project's; what it says is kept.
+/// A command of the project's, as `cargo xtask` starts it; what it says is kept.
 pub fn xtask(arguments: &[&str]) -> Command {
-    let mut command = Command::new(program("xtask"));
+    let mut command = Command::new(program("commands"));
     command.args(arguments).current_dir(repository("."));
     command
         .stdin(Stdio::null())

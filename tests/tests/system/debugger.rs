@@ -103,11 +103,11 @@ fn time_taken(process: &Path) -> u64 {
 fn an_interruption_stops_the_core_and_ends_neither_its_emulator_nor_the_session() {
     let out = tempfile::tempdir().expect("a folder");
     let (folder, log) = (out.path().display(), out.path().join("typescript"));
-    let xtask = program("xtask");
+    let commands = program("commands");
     // Without `exec` there may be a shell between: it would be interrupted as well, and its end would hide the program's.
     let line = format!(
         "exec '{}' gdb --spp 4096 --reference none --out '{folder}'",
-        xtask.display()
+        commands.display()
     );
     let mut terminal = Command::new("script")
         .args(["--quiet", "--flush", "--return", "--command", &line])

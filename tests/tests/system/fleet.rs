@@ -278,7 +278,7 @@ fn without_its_programs_it_says_how_to_get_them_and_stops() {
     let apt = bare.path().join("apt-get");
     std::fs::write(&apt, "#!/bin/sh\nexit 99\n").unwrap();
     std::fs::set_permissions(&apt, std::fs::Permissions::from_mode(0o755)).unwrap();
-    let output = Command::new(target.join("release/xtask"))
+    let output = Command::new(target.join("release/commands"))
         .args([
             "render",
             "--no-install",

@@ -8,6 +8,7 @@ mod debugger;
 mod faults;
 mod fleet;
 mod image;
+mod launcher;
 mod log;
 mod on_target;
 mod operations;

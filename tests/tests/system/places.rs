@@ -181,9 +181,9 @@ fn without_rustup_the_compiler_and_the_linker_in_path_are_taken() {
 #[test]
 fn the_runner_of_cargo_is_found_in_a_folder_with_a_space() {
     let folder = tempfile::Builder::new().prefix("it's a ").tempdir().unwrap();
-    let (runner, program) = (folder.path().join("qemu-run"), folder.path().join("an xtask"));
+    let (runner, program) = (folder.path().join("qemu-run"), folder.path().join("the commands"));
     fs::copy(repository("firmware/qemu-run"), &runner).unwrap();
-    fs::copy(whole_system::program("xtask"), &program).unwrap();
+    fs::copy(whole_system::program("commands"), &program).unwrap();
 
     // What the shell makes of the variables is what they mean.
     let system = system("");

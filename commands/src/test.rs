@@ -130,10 +130,10 @@ fn host_steps() -> anyhow::Result<()> {
             "--exclude",
             "whole-system",
             "--exclude",
-            "xtask",
+            "commands",
         ])?)?;
-        // Alone, it is tested with the host's library that it was built with: the others' tests need another one.
-        shown(cargo(&["test", "--quiet", "--release", "--package", "xtask"])?)
+        // Alone, they are tested with the host's library that they were built with: the others' tests need another one.
+        shown(cargo(&["test", "--quiet", "--release", "--package", "commands"])?)
     })?;
     step("arithmetic against the truth", || verify::sampled().map(|_| ()))
 }
