@@ -18,14 +18,19 @@ use crate::platform::setup;
 /// Time between two looks at the processes' memory, which nobody can ask for once they have ended.
 const MEASURE_EVERY: Duration = Duration::from_millis(250);
 /// The exit codes of a core that has run into a fault of its program: a panic, and an exception of the processor. They are
-/// `runtime::Exit`'s; what it says with another code it has thought about, and would say again.
+/// `runtime::ExitCode`'s; what it says with another code it has thought about, and would say again.
 const FAILED: [i32; 2] = [3, 4];
 /// How much of the end of a log is read for its last lines.
 const TAIL: u64 = 4096;
 
+/// What an image that needs nobody else may take of a processor's time: many times what any of ours takes. One that halts would
+/// take all there is.
+const PROCESSOR_SECONDS: u64 = 300;
+
 /// Runs an image that needs nobody else on one core, and waits for its end. Its console is the output.
 pub fn run_to_end(qemu: &Path, board: Board, elf: &Path) -> io::Result<Output> {
-    interrupt::output(bound_to_this_process(qemu).args(board.command_line(elf, None)))
+    let mut command = bound_to_this_process(qemu);
+    interrupt::output_within(PROCESSOR_SECONDS, command.args(board.command_line(elf, None)))
 }
 
 /// As [`run_to_end`], with a peer instead of a network: see [`Board::command_line_with_peer`].

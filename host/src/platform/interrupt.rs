@@ -11,7 +11,7 @@ use std::process::{Child, Command, ExitStatus, Output, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use rustix::process::{Pid, Signal, kill_process, kill_process_group};
+use rustix::process::{Pid, Resource, Rlimit, Signal, kill_process, kill_process_group, prlimit};
 
 use crate::platform::console::note;
 
@@ -116,7 +116,7 @@ impl LastAct {
     }
 
     fn by(kill: fn(Pid, Signal) -> rustix::io::Result<()>, child: &Child) -> Self {
-        let process = i32::try_from(child.id()).ok().and_then(Pid::from_raw);
+        let process = process(child);
         Self::new(move || {
             // One that has ended already needs no end.
             let _gone = process.map(|process| kill(process, Signal::INT));
@@ -139,11 +139,55 @@ pub fn status(command: &mut Command) -> io::Result<ExitStatus> {
 
 /// Runs a command for what it says. It and its own children are interrupted with this program.
 pub fn output(command: &mut Command) -> io::Result<Output> {
+    finish(start(command)?)
+}
+
+/// As [`output`], but the system ends the command with SIGXCPU when it has had so many seconds of a processor's time.
+pub fn output_within(processor_seconds: u64, command: &mut Command) -> io::Result<Output> {
+    let mut child = start(command)?;
+    let limit = Rlimit {
+        current: Some(processor_seconds),
+        // There SIGKILL comes.
+        maximum: Some(processor_seconds + 1),
+    };
+    if let Some(process) = process(&child)
+        && let Err(error) = prlimit(Some(process), Resource::Cpu, limit)
+    {
+        child.kill()?;
+        return Err(error.into());
+    }
+    finish(child)
+}
+
+fn start(command: &mut Command) -> io::Result<Child> {
     command
         .stdin(Stdio::null())
         .stdout(Stdio::piped())
         .stderr(Stdio::piped());
-    let child = command.process_group(0).spawn()?;
+    command.process_group(0).spawn()
+}
+
+fn finish(child: Child) -> io::Result<Output> {
     let _interrupts = LastAct::by(kill_process_group, &child);
     child.wait_with_output()
+}
+
+fn process(child: &Child) -> Option<Pid> {
+    i32::try_from(child.id()).ok().and_then(Pid::from_raw)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::os::unix::process::ExitStatusExt;
+
+    use super::*;
+
+    #[test]
+    fn a_command_that_never_ends_has_its_time_and_what_it_said_is_kept() {
+        const SIGXCPU: i32 = 24;
+        let endless = "echo begun; while :; do :; done";
+        let output = output_within(1, Command::new("sh").args(["-c", endless])).expect("a shell");
+        assert_eq!(output.status.signal(), Some(SIGXCPU));
+        assert_eq!(output.stdout, b"begun\n");
+    }
 }
