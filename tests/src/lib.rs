@@ -123,11 +123,11 @@ pub fn system_linker() -> PathBuf {
     tools.system_linker.expect("set-up gives what is wanted")
 }
 
-/// One of the boards' probes, built, with a log if it shall have one.
+/// One of the images that test a board, built, with a log if it shall have one.
 ///
 /// # Panics
 /// If it does not build.
-pub fn probe(board: Board, name: &str, log: Option<Level>) -> PathBuf {
+pub fn test_image(board: Board, name: &str, log: Option<Level>) -> PathBuf {
     let elfs = firmware::build_examples(&toolchain(), board, &[name.to_owned()], log);
     elfs.unwrap_or_else(|error| panic!("{error}")).remove(0)
 }

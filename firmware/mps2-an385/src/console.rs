@@ -18,7 +18,7 @@ const RATE: u32 = 25_000_000 / 115_200;
 
 /// Writes one line.
 #[inline(never)]
-pub fn line(text: &str) {
+pub fn println(text: &str) {
     DIVIDER.write(RATE);
     CONTROL.write(TRANSMIT_ON);
     for byte in text.bytes().chain(*b"\r\n") {

@@ -7,10 +7,10 @@
 //! Sections and bits are those of SMSC's *LAN9118 Datasheet*, revision 1.5.
 
 use node::SendError;
-use node::ethernet::Frames;
+use node::ethernet::Device;
 use runtime::registers::Register;
 
-use crate::rest;
+use crate::sleep;
 
 const BASE: usize = 0x4020_0000;
 
@@ -114,7 +114,7 @@ impl Lan9118 {
     }
 }
 
-impl Frames for Lan9118 {
+impl Device for Lan9118 {
     fn transmit(&mut self, frame: &[u8]) -> Result<(), SendError> {
         if frame.len() > MAX_FRAME {
             return Err(SendError);
@@ -158,7 +158,7 @@ impl Frames for Lan9118 {
             return;
         }
         INTERRUPT_MASK.write(INTERRUPT_RECEIVED);
-        rest::until_packet_or(ticks);
+        sleep::until_packet_or_timeout(ticks);
         INTERRUPT_MASK.write(0);
     }
 }

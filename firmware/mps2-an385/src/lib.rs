@@ -5,28 +5,28 @@
 //! | module           | what it touches                                       |
 //! | ---------------- | ----------------------------------------------------- |
 //! | [`console`]      | CMSDK UART, for messages                              |
-//! | [`clock`]        | the 25 MHz counter                                    |
-//! | [`rest`]         | wait-for-interrupt, with the system timer as alarm    |
+//! | [`counter`]      | 25 MHz, for the clock                                 |
+//! | [`sleep`]        | wait-for-interrupt, with the system timer as alarm    |
 //! | [`lan9118`]      | the Ethernet controller                               |
 //! | [`semihosting`]  | the way out, with an exit code                        |
-//! | [`fault`]        | panics and processor exceptions                       |
+//! | [`exception`]    | the processor's exceptions                            |
 //! | `log`            | semihosting, with the feature `log`                   |
 //!
 //! Start-up code, vectors and the sections' layout are `cortex-m-rt`'s; `board.x` says where everything lies.
 #![no_std]
 
-pub mod clock;
 pub mod console;
-pub mod fault;
+pub mod counter;
+pub mod exception;
 pub mod lan9118;
 #[cfg(feature = "log")]
 mod log;
-pub mod rest;
 pub mod semihosting;
+pub mod sleep;
 
 pub use cortex_m_rt::entry;
 
-use runtime::{Board, Exit};
+use runtime::{Board, ExitCode};
 
 /// A core of this board.
 #[derive(Clone, Copy, Debug)]
@@ -35,22 +35,22 @@ pub enum Core {}
 impl Board for Core {
     const NAME: &'static str = "mps2-an385";
     const NO_CONTROLLER: &'static str = "no LAN9118 answers: start QEMU with -nic user,model=lan9118";
+    const COUNTER_MEGAHERTZ: u32 = counter::MEGAHERTZ;
     type Controller = lan9118::Lan9118;
-    type Clock = clock::Counter;
 
     fn controller(mac: [u8; 6]) -> Option<Self::Controller> {
         lan9118::Lan9118::start(mac)
     }
 
-    fn clock() -> Self::Clock {
-        clock::Counter::start()
+    fn count() -> u32 {
+        counter::count()
     }
 
-    fn say(line: &str) {
-        console::line(line);
+    fn println(line: &str) {
+        console::println(line);
     }
 
-    fn exit(code: Exit) -> ! {
+    fn exit(code: ExitCode) -> ! {
         semihosting::exit(code)
     }
 }

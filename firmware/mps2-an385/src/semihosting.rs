@@ -1,16 +1,16 @@
 //! The way out: a debugger's, here QEMU's, exit call.
 
-use runtime::Exit;
+use runtime::ExitCode;
 
 /// Ends the program.
-pub fn exit(code: Exit) -> ! {
+pub fn exit(code: ExitCode) -> ! {
     let block = code.semihosting();
     // SAFETY: the semihosting call of Thumb code: r0 says what, r1 points to two words, which outlive it. Without a debugger it is a
     // hard fault, whose handler ends in this loop.
     unsafe {
-        core::arch::asm!("bkpt #0xab", inout("r0") Exit::SEMIHOSTING_OPERATION => _, in("r1") block.as_ptr(), options(nostack, readonly));
+        core::arch::asm!("bkpt #0xab", inout("r0") ExitCode::SEMIHOSTING_OPERATION => _, in("r1") block.as_ptr(), options(nostack, readonly));
     }
     loop {
-        crate::rest::until_packet_or(u32::MAX);
+        crate::sleep::until_packet_or_timeout(u32::MAX);
     }
 }

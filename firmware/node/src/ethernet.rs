@@ -16,7 +16,8 @@ use smoltcp::wire::{
 };
 use wire::{Boot, MAX_PAYLOAD};
 
-use crate::{Network, SendError, checksum, log};
+use crate::network::{Network, SendError};
+use crate::{checksum, log};
 
 const ETHERNET_LEN: usize = 14;
 const ARP_LEN: usize = 28;
@@ -32,7 +33,7 @@ const FRAMES_AT_ONCE: usize = 8;
 const HOP_LIMIT: u8 = 64;
 
 /// An Ethernet controller.
-pub trait Frames {
+pub trait Device {
     /// Sends one frame, given without its checksum. The controller pads short ones.
     fn transmit(&mut self, frame: &[u8]) -> Result<(), SendError>;
 
@@ -45,28 +46,28 @@ pub trait Frames {
 }
 
 /// UDP to and from the collector over an Ethernet controller.
-pub struct Ethernet<'a> {
-    frames: &'a mut dyn Frames,
+pub struct Interface<'a> {
+    device: &'a mut dyn Device,
     mac: EthernetAddress,
     address: Ipv4Address,
     collector: Ipv4Address,
     collector_mac: EthernetAddress,
     port: u16,
-    refused: u32,
+    malformed: u32,
 }
 
-impl<'a> Ethernet<'a> {
+impl<'a> Interface<'a> {
     /// The network of the core that `boot` describes.
     #[inline(never)]
-    pub fn new(boot: &Boot<'_>, frames: &'a mut dyn Frames) -> Self {
+    pub fn new(boot: &Boot<'_>, device: &'a mut dyn Device) -> Self {
         Self {
-            frames,
+            device,
             mac: EthernetAddress(boot.mac()),
             address: Ipv4Address::from(boot.address),
             collector: Ipv4Address::from(boot.collector),
             collector_mac: EthernetAddress::BROADCAST,
             port: boot.port,
-            refused: 0,
+            malformed: 0,
         }
     }
 
@@ -97,7 +98,7 @@ impl<'a> Ethernet<'a> {
         let mut frame = [0; ETHERNET_LEN + ARP_LEN];
         self.emit_ethernet(&mut frame, EthernetProtocol::Arp, to);
         repr.emit(&mut ArpPacket::new_unchecked(&mut frame[ETHERNET_LEN..]));
-        self.frames.transmit(&frame)
+        self.device.transmit(&frame)
     }
 
     fn emit_ethernet(&self, frame: &mut [u8], ethertype: EthernetProtocol, dst_addr: EthernetAddress) {
@@ -110,22 +111,22 @@ impl<'a> Ethernet<'a> {
     }
 
     /// Looks at one frame; gives the UDP payload if it is one for this core.
-    fn handle<'f>(&mut self, frame: &'f [u8]) -> Option<&'f [u8]> {
+    fn process<'f>(&mut self, frame: &'f [u8]) -> Option<&'f [u8]> {
         let frame = EthernetFrame::new_checked(frame).ok()?;
         if frame.dst_addr() != self.mac && !frame.dst_addr().is_broadcast() {
             return None;
         }
         match frame.ethertype() {
             EthernetProtocol::Arp => {
-                self.handle_arp(frame.payload());
+                self.process_arp(frame.payload());
                 None
             }
-            EthernetProtocol::Ipv4 => self.handle_ipv4(frame.src_addr(), frame.payload()),
+            EthernetProtocol::Ipv4 => self.process_ipv4(frame.src_addr(), frame.payload()),
             _ => None,
         }
     }
 
-    fn handle_arp(&mut self, packet: &[u8]) {
+    fn process_arp(&mut self, packet: &[u8]) {
         // Lengths that the compiler knows need no code that checks them.
         let Some(packet) = packet.first_chunk::<ARP_LEN>().map(ArpPacket::new_unchecked) else {
             return;
@@ -155,13 +156,13 @@ impl<'a> Ethernet<'a> {
         }
     }
 
-    fn handle_ipv4<'f>(&mut self, from: EthernetAddress, bytes: &'f [u8]) -> Option<&'f [u8]> {
+    fn process_ipv4<'f>(&mut self, from: EthernetAddress, bytes: &'f [u8]) -> Option<&'f [u8]> {
         let packet = Ipv4Packet::new_checked(bytes).ok()?;
         if packet.dst_addr() != self.address || packet.next_header() != IpProtocol::Udp {
             return None;
         }
         let Some(payload) = udp_payload(&packet, bytes, self.port) else {
-            self.refused = self.refused.wrapping_add(1);
+            self.malformed = self.malformed.wrapping_add(1);
             log::warn!("datagram of {=usize} bytes dropped: malformed", bytes.len());
             return None;
         };
@@ -200,7 +201,7 @@ fn pseudo_header(source: Ipv4Address, destination: Ipv4Address, len: usize) -> u
     addresses + u32::from(u8::from(IpProtocol::Udp)) + len as u32
 }
 
-impl Network for Ethernet<'_> {
+impl Network for Interface<'_> {
     fn send(&mut self, payload: &[u8]) -> Result<(), SendError> {
         let mut frame = [0; MAX_FRAME];
         let len = ETHERNET_LEN + IPV4_LEN + UDP_LEN + payload.len();
@@ -237,14 +238,14 @@ impl Network for Ethernet<'_> {
         // Zero would say that there is none; it is one of two spellings of the same number.
         let checksum = NonZeroU16::new(checksum::of(sum)).unwrap_or(NonZeroU16::MAX);
         UdpPacket::new_unchecked(datagram).set_checksum(checksum.get());
-        self.frames.transmit(frame)
+        self.device.transmit(frame)
     }
 
     fn receive(&mut self, buffer: &mut [u8]) -> Option<usize> {
         let mut frame = [0; MAX_FRAME];
         for _ in 0..FRAMES_AT_ONCE {
-            let len = self.frames.receive(&mut frame)?;
-            if let Some(payload) = self.handle(frame.get(..len)?) {
+            let len = self.device.receive(&mut frame)?;
+            if let Some(payload) = self.process(frame.get(..len)?) {
                 let len = payload.len().min(buffer.len());
                 let (room, payload) = (buffer.get_mut(..len)?, payload.get(..len)?);
                 room.copy_from_slice(payload);
@@ -255,10 +256,10 @@ impl Network for Ethernet<'_> {
     }
 
     fn wait(&mut self, ticks: u32) {
-        self.frames.wait(ticks);
+        self.device.wait(ticks);
     }
 
-    fn refused(&self) -> u32 {
-        self.refused
+    fn malformed(&self) -> u32 {
+        self.malformed
     }
 }

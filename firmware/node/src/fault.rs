@@ -1,9 +1,11 @@
-//! Why a core ends without having been told to.
+//! Why a core ends without having been told to, and how the host is told.
 
 use core::fmt;
 
 use tracer::scene::BlobError;
-use wire::SumsError;
+use wire::{Boot, FaultInfo, FromCore, MAX_PAYLOAD, Message, SumsError};
+
+use crate::network::{Network, SendError};
 
 /// Why a core ends without having been told to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,3 +56,24 @@ impl fmt::Display for Fault {
 }
 
 impl core::error::Error for Fault {}
+
+/// Tells the host why this core ends, and at which instruction where that is known. Tries once: who sends this has little left to
+/// rely on.
+#[inline(never)]
+pub fn send_fault(
+    boot: &Boot<'_>,
+    network: &mut dyn Network,
+    address: Option<u32>,
+    reason: &str,
+) -> Result<(), SendError> {
+    let mut packet = [0; MAX_PAYLOAD];
+    let message = Message::Fault(FaultInfo { address, reason });
+    let len = FromCore {
+        core: boot.core,
+        seq: 0,
+        session: boot.session,
+        message,
+    }
+    .encode(&mut packet);
+    network.send(packet.get(..len).unwrap_or_default())
+}

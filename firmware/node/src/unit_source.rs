@@ -12,13 +12,13 @@ pub(crate) enum UnitSource {
     Leased,
     /// One after the other, wrapping at `units`.
     Sequential { next: u32, units: u32 },
-    /// Drawn uniformly, each pixel run as likely as any other.
+    /// Drawn uniformly, each span of pixels as likely as any other.
     Stochastic { limit: u32, random: SplitMix },
 }
 
 impl UnitSource {
-    /// The source the boot block asks for, over `runs` pixel runs and `units` units.
-    pub(crate) fn new(boot: &Boot<'_>, runs: u32, units: u32) -> Self {
+    /// The source the boot block asks for, over `spans` spans of pixels and `units` units.
+    pub(crate) fn new(boot: &Boot<'_>, spans: u32, units: u32) -> Self {
         match boot.order {
             PixelOrder::Leased => Self::Leased,
             PixelOrder::Sequential => {
@@ -26,7 +26,7 @@ impl UnitSource {
                 Self::Sequential { next, units }
             }
             PixelOrder::Stochastic => Self::Stochastic {
-                limit: last_whole_pass(runs),
+                limit: last_whole_pass(spans),
                 random: SplitMix::new(boot.seed ^ u64::from(boot.core).rotate_right(16)),
             },
         }
@@ -58,11 +58,11 @@ fn share_start(units: u32, core: u32, cores: u32) -> u32 {
     each * core + quotient((units - each * cores) * core, cores)
 }
 
-/// The greatest unit id of the last whole pass that fits 32 bits: runs * floor(2^32 / runs) - 1, likewise.
-fn last_whole_pass(runs: u32) -> u32 {
-    let whole = quotient(u32::MAX, runs) * runs;
+/// The greatest unit id of the last whole pass that fits 32 bits: spans * floor(2^32 / spans) - 1, likewise.
+fn last_whole_pass(spans: u32) -> u32 {
+    let whole = quotient(u32::MAX, spans) * spans;
     // Another pass ends past the last id, or with it.
-    if whole.wrapping_add(runs) == 0 {
+    if whole.wrapping_add(spans) == 0 {
         u32::MAX
     } else {
         whole - 1
@@ -99,7 +99,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_last_whole_pass_ends_on_a_run_boundary() {
+    fn the_last_whole_pass_ends_with_a_span() {
         assert_eq!(last_whole_pass(1), u32::MAX);
         assert_eq!(last_whole_pass(192), u32::MAX - 64);
         assert_eq!(last_whole_pass(3), u32::MAX - 1);
@@ -133,18 +133,18 @@ mod tests {
         assert_eq!(SplitMix::new(0).next(), 0xE220_A839);
     }
 
-    /// 64 runs drawn 64,000 times: chi-square with 63 degrees of freedom exceeds 103 once in a thousand.
+    /// 64 spans drawn 64,000 times: chi-square with 63 degrees of freedom exceeds 103 once in a thousand.
     #[test]
-    fn stochastic_units_cover_the_runs_evenly() {
-        let (mut counts, runs) = ([0u32; 64], 64);
+    fn stochastic_units_cover_the_spans_evenly() {
+        let (mut counts, spans) = ([0u32; 64], 64);
         let random = SplitMix::new(42);
         let mut source = UnitSource::Stochastic {
-            limit: last_whole_pass(runs),
+            limit: last_whole_pass(spans),
             random,
         };
         for _ in 0..64_000 {
             let unit = source.next(&mut Leases::default()).unwrap();
-            counts[(unit % runs) as usize] += 1;
+            counts[(unit % spans) as usize] += 1;
         }
         let chi2: f64 = counts
             .iter()

@@ -5,21 +5,24 @@ use wire::{
     Boot, Command, Farewell, FromCore, Hello, MAX_PAYLOAD, Message, Name, PixelSums, Pixels, ToCore, VERSION,
 };
 
+use crate::clock::{Clock, TICKS_PER_SECOND};
+use crate::fault::Fault;
 use crate::leases::Leases;
+use crate::log;
+use crate::network::Network;
 use crate::unit_source::UnitSource;
-use crate::{Clock, Fault, Network, TICKS_PER_SECOND, log};
 
 /// A core that has just become idle asks for work after this time again, and then after twice the time before...
-const FIRST_PAUSE: u32 = TICKS_PER_SECOND / 20;
+const FIRST_HELLO_INTERVAL: u32 = TICKS_PER_SECOND / 20;
 
 /// ...but at least this often: idle cores, however many, leave the host its time.
-const LONGEST_PAUSE: u32 = 16 * FIRST_PAUSE;
+const LAST_HELLO_INTERVAL: u32 = 16 * FIRST_HELLO_INTERVAL;
 
-/// Times a packet is tried before the core gives up. Between two tries it takes what has arrived, which frees buffers, and rests.
+/// Times a packet is tried before the core gives up. Between two tries it takes what has arrived, which frees buffers, and waits.
 const SEND_TRIES: u32 = 16;
 
-/// The rest between two tries: a millisecond.
-const SEND_REST: u32 = TICKS_PER_SECOND / 1000;
+/// The wait between two tries: a millisecond.
+const RETRY_INTERVAL: u32 = TICKS_PER_SECOND / 1000;
 
 /// Packets taken at once at most, so that a flood of them cannot keep a core from its work.
 const RECEIVED_AT_ONCE: u32 = 16;
@@ -123,7 +126,7 @@ impl<'a> Worker<'a> {
             self.units
         );
         self.send_hello()?;
-        let (mut last_hello, mut pause) = (self.clock.ticks(), FIRST_PAUSE);
+        let (mut last_hello, mut interval) = (self.clock.ticks(), FIRST_HELLO_INTERVAL);
         loop {
             self.receive();
             if self.stopped {
@@ -131,16 +134,16 @@ impl<'a> Worker<'a> {
             }
             if let Some(unit) = self.source.next(&mut self.leases) {
                 self.work(unit)?;
-                pause = FIRST_PAUSE;
+                interval = FIRST_HELLO_INTERVAL;
                 continue;
             }
             let since = self.clock.ticks().wrapping_sub(last_hello);
-            if since >= pause {
+            if since >= interval {
                 self.send_hello()?;
                 last_hello = self.clock.ticks();
-                pause = (2 * pause).min(LONGEST_PAUSE);
+                interval = (2 * interval).min(LAST_HELLO_INTERVAL);
             } else {
-                self.network.wait(pause - since);
+                self.network.wait(interval - since);
             }
         }
     }
@@ -182,14 +185,14 @@ impl<'a> Worker<'a> {
             let Some(len) = self.network.receive(&mut buffer) else {
                 return;
             };
-            if !buffer.get(..len).is_some_and(|payload| self.obey(payload)) {
+            if !buffer.get(..len).is_some_and(|payload| self.process(payload)) {
                 self.rejected = self.rejected.wrapping_add(1);
             }
         }
     }
 
     /// Does what a packet says; false where it is not for this core now.
-    fn obey(&mut self, payload: &[u8]) -> bool {
+    fn process(&mut self, payload: &[u8]) -> bool {
         let ToCore {
             core,
             session,
@@ -290,12 +293,12 @@ impl<'a> Worker<'a> {
                 SEND_TRIES - 1 - failed
             );
             self.receive();
-            self.network.wait(SEND_REST);
+            self.network.wait(RETRY_INTERVAL);
         }
         Err(Fault::Network)
     }
 
     fn all_rejected(&self) -> u32 {
-        self.rejected.wrapping_add(self.network.refused())
+        self.rejected.wrapping_add(self.network.malformed())
     }
 }

@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::rc::Rc;
 
-use node::ethernet::{Ethernet, Frames, MAX_FRAME};
+use node::ethernet::{Device, Interface, MAX_FRAME};
 use node::{Network, SendError};
 use proptest::prelude::*;
 use wire::boot::{PixelOrder, Termination};
@@ -19,7 +19,7 @@ struct Cable {
     from_core: Rc<RefCell<Vec<Vec<u8>>>>,
 }
 
-impl Frames for Cable {
+impl Device for Cable {
     fn transmit(&mut self, frame: &[u8]) -> Result<(), SendError> {
         self.from_core.borrow_mut().push(frame.to_vec());
         Ok(())
@@ -35,7 +35,7 @@ impl Frames for Cable {
 }
 
 /// Core 259 at 10.0.2.15, its collector at 10.0.2.2, port 17893 (0x45E5).
-fn ethernet() -> (Ethernet<'static>, Cable) {
+fn interface() -> (Interface<'static>, Cable) {
     let boot = Boot {
         core: 259,
         cores: 260,
@@ -57,7 +57,7 @@ fn ethernet() -> (Ethernet<'static>, Cable) {
         scene: &[],
     };
     let cable = Cable::default();
-    (Ethernet::new(&boot, Box::leak(Box::new(cable.clone()))), cable)
+    (Interface::new(&boot, Box::leak(Box::new(cable.clone()))), cable)
 }
 
 /// A datagram from the collector, as slirp sends it; its payload is `hi!`. Checksums by Python.
@@ -76,10 +76,10 @@ const ARP_REQUEST: [u8; 42] = [
     0, 0, 0, 0, 0, 0, 10, 0, 2, 15,
 ];
 
-fn received(ethernet: &mut Ethernet<'static>, cable: &Cable, frame: &[u8]) -> Option<Vec<u8>> {
+fn received(interface: &mut Interface<'static>, cable: &Cable, frame: &[u8]) -> Option<Vec<u8>> {
     cable.to_core.borrow_mut().push_back(frame.to_vec());
     let mut buffer = [0xa5; 300];
-    ethernet.receive(&mut buffer).map(|len| buffer[..len].to_vec())
+    interface.receive(&mut buffer).map(|len| buffer[..len].to_vec())
 }
 
 /// The frame with `bytes` put at `offset`.
@@ -91,8 +91,8 @@ fn patched(frame: &[u8], offset: usize, bytes: &[u8]) -> Vec<u8> {
 
 #[test]
 fn the_announcement_is_a_gratuitous_arp_request() {
-    let (mut ethernet, cable) = ethernet();
-    ethernet.announce().unwrap();
+    let (mut interface, cable) = interface();
+    interface.announce().unwrap();
     #[rustfmt::skip]
     let expected = [
         0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x02, 0, 0, 0, 1, 3, 0x08, 0x06,
@@ -105,8 +105,8 @@ fn the_announcement_is_a_gratuitous_arp_request() {
 
 #[test]
 fn an_arp_request_is_answered() {
-    let (mut ethernet, cable) = ethernet();
-    assert_eq!(received(&mut ethernet, &cable, &ARP_REQUEST), None);
+    let (mut interface, cable) = interface();
+    assert_eq!(received(&mut interface, &cable, &ARP_REQUEST), None);
     #[rustfmt::skip]
     let expected = [
         0x52, 0x55, 10, 0, 2, 2, 0x02, 0, 0, 0, 1, 3, 0x08, 0x06,
@@ -119,17 +119,17 @@ fn an_arp_request_is_answered() {
 
 #[test]
 fn an_arp_request_for_another_is_not_answered() {
-    let (mut ethernet, cable) = ethernet();
-    received(&mut ethernet, &cable, &patched(&ARP_REQUEST, 41, &[16]));
-    received(&mut ethernet, &cable, &patched(&ARP_REQUEST, 18, &[200, 200])); // address lengths that lie
-    received(&mut ethernet, &cable, &ARP_REQUEST[..41]);
+    let (mut interface, cable) = interface();
+    received(&mut interface, &cable, &patched(&ARP_REQUEST, 41, &[16]));
+    received(&mut interface, &cable, &patched(&ARP_REQUEST, 18, &[200, 200])); // address lengths that lie
+    received(&mut interface, &cable, &ARP_REQUEST[..41]);
     assert!(cable.from_core.take().is_empty());
 }
 
 #[test]
 fn a_datagram_goes_to_everybody_until_the_collector_is_known() {
-    let (mut ethernet, cable) = ethernet();
-    ethernet.send(b"hi!").unwrap();
+    let (mut interface, cable) = interface();
+    interface.send(b"hi!").unwrap();
     #[rustfmt::skip]
     let expected = [
         0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x02, 0, 0, 0, 1, 3, 0x08, 0x00,
@@ -138,45 +138,45 @@ fn a_datagram_goes_to_everybody_until_the_collector_is_known() {
     ];
     assert_eq!(cable.from_core.take(), [expected]);
 
-    received(&mut ethernet, &cable, &ARP_REQUEST);
+    received(&mut interface, &cable, &ARP_REQUEST);
     cable.from_core.take();
-    ethernet.send(b"hi!").unwrap();
+    interface.send(b"hi!").unwrap();
     assert_eq!(cable.from_core.take(), [patched(&expected, 0, &HOST_MAC)]);
 }
 
 #[test]
 fn the_collector_is_also_learnt_from_its_datagrams() {
-    let (mut ethernet, cable) = ethernet();
+    let (mut interface, cable) = interface();
     assert_eq!(
-        received(&mut ethernet, &cable, &DATAGRAM).as_deref(),
+        received(&mut interface, &cable, &DATAGRAM).as_deref(),
         Some(&b"hi!"[..])
     );
-    ethernet.send(b"").unwrap();
+    interface.send(b"").unwrap();
     assert_eq!(cable.from_core.take()[0][..6], HOST_MAC);
 }
 
 #[test]
 fn nobody_else_is_learnt() {
-    let (mut ethernet, cable) = ethernet();
-    received(&mut ethernet, &cable, &patched(&ARP_REQUEST, 31, &[3]));
+    let (mut interface, cable) = interface();
+    received(&mut interface, &cable, &patched(&ARP_REQUEST, 31, &[3]));
     cable.from_core.take();
-    ethernet.send(b"").unwrap();
+    interface.send(b"").unwrap();
     assert_eq!(cable.from_core.take()[0][..6], BROADCAST);
 }
 
 #[test]
 fn padding_of_short_frames_is_not_payload() {
-    let (mut ethernet, cable) = ethernet();
+    let (mut interface, cable) = interface();
     let padded = [&DATAGRAM[..], &[0xa5; 15]].concat();
     assert_eq!(
-        received(&mut ethernet, &cable, &padded).as_deref(),
+        received(&mut interface, &cable, &padded).as_deref(),
         Some(&b"hi!"[..])
     );
 }
 
 #[test]
 fn frames_that_lie_about_their_length_are_refused() {
-    let (mut ethernet, cable) = ethernet();
+    let (mut interface, cable) = interface();
     let frames = [
         patched(&DATAGRAM, 38, &[0, 200]), // the UDP length is longer than the frame
         patched(&DATAGRAM, 38, &[0, 7]),   // and shorter than its own header
@@ -184,9 +184,9 @@ fn frames_that_lie_about_their_length_are_refused() {
         patched(&DATAGRAM, 24, &[0xFF]),   // the IPv4 checksum does not match
         patched(&DATAGRAM, 36, &[0x45, 0xE6]), // another port
     ];
-    for (refused, frame) in (1..).zip(frames) {
-        assert_eq!(received(&mut ethernet, &cable, &frame), None);
-        assert_eq!(ethernet.refused(), refused);
+    for (malformed, frame) in (1..).zip(frames) {
+        assert_eq!(received(&mut interface, &cable, &frame), None);
+        assert_eq!(interface.malformed(), malformed);
     }
     // Not even recognisable as UDP for this core: dropped, not counted.
     for frame in [
@@ -198,25 +198,25 @@ fn frames_that_lie_about_their_length_are_refused() {
         DATAGRAM[..13].to_vec(),
         vec![],
     ] {
-        assert_eq!(received(&mut ethernet, &cable, &frame), None);
+        assert_eq!(received(&mut interface, &cable, &frame), None);
     }
-    assert_eq!(ethernet.refused(), 5);
+    assert_eq!(interface.malformed(), 5);
 }
 
 #[test]
 fn the_own_chatter_of_a_network_is_skipped() {
-    let (mut ethernet, cable) = ethernet();
+    let (mut interface, cable) = interface();
     cable.to_core.borrow_mut().extend(vec![ARP_REQUEST.to_vec(); 3]);
     assert_eq!(
-        received(&mut ethernet, &cable, &DATAGRAM).as_deref(),
+        received(&mut interface, &cable, &DATAGRAM).as_deref(),
         Some(&b"hi!"[..])
     );
 }
 
 #[test]
 fn a_payload_that_no_frame_can_hold_is_refused() {
-    let (mut ethernet, cable) = ethernet();
-    assert_eq!(ethernet.send(&[0; MAX_FRAME]), Err(SendError));
+    let (mut interface, cable) = interface();
+    assert_eq!(interface.send(&[0; MAX_FRAME]), Err(SendError));
     assert!(cable.from_core.take().is_empty());
 }
 
@@ -225,8 +225,8 @@ proptest! {
 
     #[test]
     fn any_frame(frame in prop::collection::vec(any::<u8>(), 0..MAX_FRAME)) {
-        let (mut ethernet, cable) = ethernet();
-        received(&mut ethernet, &cable, &frame);
+        let (mut interface, cable) = interface();
+        received(&mut interface, &cable, &frame);
     }
 
     #[test]
@@ -238,7 +238,7 @@ proptest! {
             frame[at] = byte;
         }
         frame.truncate(frame.len() - cut);
-        let (mut ethernet, cable) = ethernet();
-        received(&mut ethernet, &cable, &frame);
+        let (mut interface, cable) = interface();
+        received(&mut interface, &cable, &frame);
     }
 }

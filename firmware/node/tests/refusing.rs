@@ -95,29 +95,26 @@ fn a_scene_that_is_none() {
 }
 
 #[test]
-fn last_words_name_the_core() {
+fn a_fault_names_the_core() {
     let mut mailbox = Mailbox::default();
-    let words = Fault::Scene.as_str();
+    let reason = Fault::Scene.as_str();
     let address = Some(0x1A34);
-    node::last_words(&job(), &mut &mut mailbox, address, words).unwrap();
+    node::send_fault(&job(), &mut &mut mailbox, address, reason).unwrap();
     let expected = FromCore {
         core: 20,
         seq: 0,
         session: 77,
-        message: Message::Fault(FaultInfo {
-            address,
-            reason: words,
-        }),
+        message: Message::Fault(FaultInfo { address, reason }),
     };
     assert_eq!(FromCore::decode(&mailbox.sent[0]), Ok(expected));
 }
 
 #[test]
-fn last_words_are_tried_once() {
+fn a_fault_is_sent_once() {
     let mut mailbox = Mailbox {
         full: true,
         ..Mailbox::default()
     };
-    let refused = node::last_words(&job(), &mut &mut mailbox, None, "!");
+    let refused = node::send_fault(&job(), &mut &mut mailbox, None, "!");
     assert_eq!(refused, Err(SendError));
 }

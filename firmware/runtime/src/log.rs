@@ -5,16 +5,16 @@ use core::cell::Cell;
 use critical_section::Mutex;
 use node::log::Uptime;
 
+use crate::board::Board;
+
 static UPTIME: Mutex<Cell<Uptime>> = Mutex::new(Cell::new(Uptime::new()));
 
-/// Microseconds until a counter of so many megahertz, the same in every call, came to `count`.
-///
-/// A board's clock asks each time that it is read itself, so that no turn of the counter is missed.
+/// Microseconds by the board's counter since it was zero.
 #[inline(never)]
-pub fn uptime(count: u32, megahertz: u32) -> u64 {
+pub fn uptime<B: Board>() -> u64 {
     critical_section::with(|section| {
         let mut uptime = UPTIME.borrow(section).get();
-        let micros = uptime.micros(count, megahertz);
+        let micros = uptime.micros(B::count(), B::COUNTER_MEGAHERTZ);
         UPTIME.borrow(section).set(uptime);
         micros
     })

@@ -11,7 +11,7 @@ const TRANSMIT_FULL: u32 = 1 << 5;
 
 /// Writes one line.
 #[inline(never)]
-pub fn line(text: &str) {
+pub fn println(text: &str) {
     for byte in text.bytes().chain(*b"\r\n") {
         while FLAGS.read() & TRANSMIT_FULL != 0 {}
         DATA.write(byte.into());

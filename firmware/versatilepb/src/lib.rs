@@ -5,28 +5,28 @@
 //! | module           | what it touches                                    |
 //! | ---------------- | -------------------------------------------------- |
 //! | [`console`]      | PL011, for messages                                |
-//! | [`clock`]        | the 24 MHz counter                                 |
-//! | [`rest`]         | wait-for-interrupt, with a timer as alarm          |
+//! | [`counter`]      | 24 MHz, for the clock                              |
+//! | [`sleep`]        | wait-for-interrupt, with a timer as alarm          |
 //! | [`smc91c111`]    | the Ethernet controller                            |
 //! | [`semihosting`]  | the way out, with an exit code                     |
-//! | [`fault`]        | panics and processor exceptions                    |
+//! | [`exception`]    | the processor's exceptions                         |
 //! | `log`            | the second PL011, with the feature `log`           |
 //!
 //! Start-up code, vectors and the sections' layout are `aarch32-rt`'s; `board.x` says where everything lies.
 #![no_std]
 
-pub mod clock;
 pub mod console;
-pub mod fault;
+pub mod counter;
+pub mod exception;
 #[cfg(feature = "log")]
 mod log;
-pub mod rest;
 pub mod semihosting;
+pub mod sleep;
 pub mod smc91c111;
 
 pub use aarch32_rt::entry;
 
-use runtime::{Board, Exit};
+use runtime::{Board, ExitCode};
 
 /// A core of this board.
 #[derive(Clone, Copy, Debug)]
@@ -35,22 +35,22 @@ pub enum Core {}
 impl Board for Core {
     const NAME: &'static str = "versatilepb";
     const NO_CONTROLLER: &'static str = "no SMC91C111 answers: start QEMU with -nic user,model=smc91c111";
+    const COUNTER_MEGAHERTZ: u32 = counter::MEGAHERTZ;
     type Controller = smc91c111::Smc91c111;
-    type Clock = clock::Counter;
 
     fn controller(mac: [u8; 6]) -> Option<Self::Controller> {
         smc91c111::Smc91c111::start(mac)
     }
 
-    fn clock() -> Self::Clock {
-        clock::Counter
+    fn count() -> u32 {
+        counter::count()
     }
 
-    fn say(line: &str) {
-        console::line(line);
+    fn println(line: &str) {
+        console::println(line);
     }
 
-    fn exit(code: Exit) -> ! {
+    fn exit(code: ExitCode) -> ! {
         semihosting::exit(code)
     }
 }

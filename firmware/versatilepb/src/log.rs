@@ -18,17 +18,9 @@ const FLAGS: Register<u32> = unsafe { Register::new(0x101F_2018) };
 const TRANSMIT_FULL: u32 = 1 << 5;
 const BUSY: u32 = 1 << 3;
 
-/// Of the counter.
-const MEGAHERTZ: u32 = 24;
-
 static ENCODER: Mutex<RefCell<Encoder>> = Mutex::new(RefCell::new(Encoder::new()));
 
-defmt::timestamp!("{=u64:us}", uptime());
-
-/// Microseconds since the start.
-pub(crate) fn uptime() -> u64 {
-    runtime::log::uptime(crate::clock::count(), MEGAHERTZ)
-}
+defmt::timestamp!("{=u64:us}", runtime::log::uptime::<crate::Core>());
 
 #[defmt::global_logger]
 struct SecondUart;

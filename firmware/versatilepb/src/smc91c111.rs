@@ -2,7 +2,7 @@
 //!
 //! Sixteen bytes of registers in four banks; the last word chooses the bank. Packets lie in 8 KiB of the controller's own memory,
 //! shared by both directions, and are read and written through one data register behind a pointer. Reception can fill all of that
-//! memory, so whoever waits for a transmit buffer takes received packets first: [`Frames::transmit`] gives up after a moment, and
+//! memory, so whoever waits for a transmit buffer takes received packets first: [`Device::transmit`] gives up after a moment, and
 //! the caller receives and tries again.
 //!
 //! A packet in that memory:
@@ -15,9 +15,9 @@
 //! | count - 2 | 2     | control in the upper byte; the last byte of an odd frame in the lower       |
 
 use node::SendError;
-use node::ethernet::Frames;
+use node::ethernet::Device;
 
-use crate::rest;
+use crate::sleep;
 use runtime::registers::Register;
 
 const BASE: usize = 0x1001_0000;
@@ -155,7 +155,7 @@ impl Smc91c111 {
     }
 }
 
-impl Frames for Smc91c111 {
+impl Device for Smc91c111 {
     fn transmit(&mut self, frame: &[u8]) -> Result<(), SendError> {
         if frame.len() > MAX_FRAME {
             return Err(SendError);
@@ -194,7 +194,7 @@ impl Frames for Smc91c111 {
 
     fn wait(&mut self, ticks: u32) {
         INTERRUPT_MASK.write(INTERRUPT_RECEIVED);
-        rest::until_packet_or(ticks);
+        sleep::until_packet_or_timeout(ticks);
         INTERRUPT_MASK.write(0);
     }
 }

@@ -14,32 +14,32 @@ use host::fleet::{Core, Fleet, QemuFleet, RESTARTS, run_to_end};
 use host::render::options::RenderOptions;
 use host::render::{Job, boot_blocks};
 use tracer::profile::Precise;
-use whole_system::{cornell, film, plan, probe, qemu, repository};
+use whole_system::{cornell, film, plan, qemu, repository, test_image};
 use wire::FaultInfo;
 
-/// One of the boards' probes, and what it says until its end.
+/// One of the images that test a board, and what it says until its end.
 fn ended(board: Board, name: &str) -> (PathBuf, String) {
-    let elf = probe(board, name, None);
+    let elf = test_image(board, name, None);
     let output = run_to_end(&qemu(), board, &elf).unwrap();
     (elf, String::from_utf8_lossy(&output.stdout).into_owned())
 }
 
-/// The address that a core's last words name.
-fn address(words: &str) -> u32 {
-    let (_, after) = words.split_once(" at 0x").unwrap_or_else(|| panic!("{words}"));
+/// The address that a core's fault report names.
+fn address(report: &str) -> u32 {
+    let (_, after) = report.split_once(" at 0x").unwrap_or_else(|| panic!("{report}"));
     u32::from_str_radix(&after[..8], 16).unwrap()
 }
 
 #[test]
-fn the_address_of_a_fault_is_one_of_the_probe_s_own_lines() {
+fn the_address_of_a_fault_is_one_of_the_image_s_own_lines() {
     for board in Board::ALL {
-        let (elf, said) = ended(board, "exception_probe");
+        let (elf, said) = ended(board, "undefined_instruction");
         let place = Place::of(&elf, address(&said)).unwrap();
         println!("{board}: {} is {place}", said.trim());
         assert!(
             place
                 .line
-                .is_some_and(|line| line.contains("exception_probe.rs:")),
+                .is_some_and(|line| line.contains("undefined_instruction.rs:")),
             "{said}"
         );
         assert_eq!(
@@ -53,7 +53,7 @@ fn the_address_of_a_fault_is_one_of_the_probe_s_own_lines() {
 #[test]
 fn a_panic_is_traced_to_its_function_by_the_line_it_names() {
     for board in Board::ALL {
-        let (elf, said) = ended(board, "panic_probe");
+        let (elf, said) = ended(board, "panicking");
         let words = FaultInfo {
             address: None,
             reason: said.trim(),
@@ -75,9 +75,9 @@ struct Flags {
     options: RenderOptions,
 }
 
-/// Collects the Cornell box from cores with a probe instead of the image that the job would build: what came, and the log.
+/// Collects the Cornell box from cores with a failing image instead of the image that the job would build: what came, and the log.
 fn collected(board: Board, name: &str, log: Option<Level>, flags: &str) -> (Collection, String) {
-    let elf = probe(board, name, log);
+    let elf = test_image(board, name, log);
     let (scene, out) = (repository("scenes/cornell.toml"), tempfile::tempdir().unwrap());
     let words = [
         "render",
@@ -111,7 +111,7 @@ fn a_core_that_fails_again_and_again_is_named_and_the_picture_is_complete_withou
     let both = |board| [(board, None), (board, Some(Level::Error))];
     for (board, log) in Board::ALL.into_iter().flat_map(both) {
         let flags = "--size 128x96 --spp 128 --cores 3";
-        let (collection, text) = collected(board, "failing_probe", log, flags);
+        let (collection, text) = collected(board, "failing", log, flags);
         assert_eq!(collection.end, End::Complete);
         assert_eq!(collection.film.sha256(), expected);
         assert_eq!(collection.packets.lost, 0, "a new life is no loss");
@@ -124,11 +124,7 @@ fn a_core_that_fails_again_and_again_is_named_and_the_picture_is_complete_withou
         let fault = failed.fault().unwrap();
         let (given_up, end) = (failed.heard.unwrap(), collection.elapsed);
         println!("{board}: given up after {given_up:.1?} of {end:.1?}: {fault}");
-        for words in [
-            "undefined instruction at 0x",
-            "failing_probe::fail",
-            "failing_probe.rs:",
-        ] {
+        for words in ["undefined instruction at 0x", "failing::fail", "failing.rs:"] {
             assert!(fault.contains(words), "{words} in: {fault}");
         }
         for core in others {

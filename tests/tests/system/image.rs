@@ -86,7 +86,7 @@ fn run_image(board: Board, elf: &Path) -> (Option<i32>, String) {
 #[test]
 fn an_image_with_a_float_in_it_does_not_link() {
     for board in Board::ALL {
-        let text = refused(board, "float_probe");
+        let text = refused(board, "floating_point");
         assert!(text.contains("float"), "{text}");
         assert!(
             text.contains("__aeabi_fmul") || text.contains("__mulsf3"),
@@ -98,9 +98,9 @@ fn an_image_with_a_float_in_it_does_not_link() {
 #[test]
 fn an_image_with_too_much_code_or_data_does_not_link() {
     for (board, region) in [(Board::Versatilepb, "CODE"), (Board::Mps2An385, "FLASH")] {
-        let text = refused(board, "code_probe");
+        let text = refused(board, "too_much_code");
         assert!(text.contains("ITCM") || text.contains(region), "{text}");
-        let text = refused(board, "data_probe");
+        let text = refused(board, "too_much_data");
         assert!(text.contains("data and stacks do not fit"), "{text}");
     }
 }
@@ -108,7 +108,7 @@ fn an_image_with_too_much_code_or_data_does_not_link() {
 #[test]
 fn the_core_s_clock_counts_instructions() {
     for board in Board::ALL {
-        let (code, said) = run(board, "clock_probe");
+        let (code, said) = run(board, "clock_test");
         assert_eq!(code, Some(0), "{said}");
     }
 }
@@ -116,19 +116,19 @@ fn the_core_s_clock_counts_instructions() {
 #[test]
 fn the_system_s_own_linker_links_what_fits_and_names_the_one_cause_why_something_does_not() {
     for board in Board::ALL {
-        let (output, elf) = linked_by_the_system(board, "clock_probe");
+        let (output, elf) = linked_by_the_system(board, "clock_test");
         assert!(output.status.success(), "{}", said(&output));
         let (code, text) = run_image(board, &elf);
         assert_eq!(code, Some(0), "{text}");
 
-        let (output, _) = linked_by_the_system(board, "data_probe");
+        let (output, _) = linked_by_the_system(board, "too_much_data");
         let text = said(&output);
         assert!(!output.status.success(), "{text}");
         assert!(text.contains("data and stacks do not fit"), "{text}");
         assert!(!text.contains("floating point"), "{text}");
 
         // Not every linker knows which routines are left in the image; the host finds them there.
-        let (output, elf) = linked_by_the_system(board, "float_probe");
+        let (output, elf) = linked_by_the_system(board, "floating_point");
         let found = match output.status.success() {
             true => {
                 firmware::measure(board, &fs::read(elf).unwrap())
@@ -144,10 +144,10 @@ fn the_system_s_own_linker_links_what_fits_and_names_the_one_cause_why_something
 #[test]
 fn a_panic_and_a_fault_say_what_and_where_and_end_the_core() {
     for board in Board::ALL {
-        let (code, said) = run(board, "panic_probe");
+        let (code, said) = run(board, "panicking");
         assert_eq!(code, Some(3), "{said}");
-        assert!(said.contains("panic_probe.rs"), "{said}");
-        let (code, said) = run(board, "exception_probe");
+        assert!(said.contains("panicking.rs"), "{said}");
+        let (code, said) = run(board, "undefined_instruction");
         assert_eq!(code, Some(4), "{said}");
         assert!(said.contains("undefined instruction at 0x"), "{said}");
     }

@@ -1,6 +1,6 @@
 //! Tests that run on the cores themselves, on every board: their console says how each of them ended.
 
-#[path = "../../../firmware/probes/shared/wire_cases.rs"]
+#[path = "../../../firmware/images/shared/wire_cases.rs"]
 mod wire_cases;
 
 use std::io;
@@ -14,7 +14,7 @@ use host::bench::operations::bench::measure;
 use host::firmware::board::Board;
 use host::fleet::{run_to_end, run_with_peer};
 use operations::Group;
-use whole_system::{probe, qemu, toolchain};
+use whole_system::{qemu, test_image, toolchain};
 
 /// The tests that a core has passed, with what they have found.
 fn passed(board: Board, output: &Output) -> Vec<(String, Option<u64>)> {
@@ -41,7 +41,7 @@ fn passed(board: Board, output: &Output) -> Vec<(String, Option<u64>)> {
 #[test]
 fn the_wire_and_the_stack_mark_are_right_on_every_core() {
     for board in Board::ALL {
-        let elf = probe(board, "core_tests", None);
+        let elf = test_image(board, "core_tests", None);
         let output = run_to_end(&qemu(), board, &elf).expect("QEMU starts");
         let found: Vec<u64> = passed(board, &output)
             .into_iter()
@@ -58,7 +58,7 @@ fn the_wire_and_the_stack_mark_are_right_on_every_core() {
 #[test]
 fn every_controller_s_driver_holds_out_against_its_peer() {
     for board in Board::ALL {
-        let elf = probe(board, "controller_tests", None);
+        let elf = test_image(board, "controller_tests", None);
         let peer = UdpSocket::bind("127.0.0.1:0").expect("a free port");
         let core = free_port();
         peer.connect(("127.0.0.1", core)).expect("an address");
@@ -108,7 +108,7 @@ fn free_port() -> u16 {
     socket.local_addr().expect("it is bound").port()
 }
 
-/// Where a frame says what it is; see `firmware/probes/controller_tests.rs`.
+/// Where a frame says what it is; see `firmware/images/controller_tests.rs`.
 const LETTER: usize = 14;
 const NUMBER: usize = 15;
 const LENGTH: usize = 17;

@@ -299,7 +299,7 @@ fn cargo_run_in_a_board_s_folder_runs_an_image() {
     assert!(printed.status.success(), "{}", said(&printed));
     let exports = String::from_utf8(printed.stdout).expect("UTF-8");
     for board in Board::ALL {
-        let script = format!("{exports}\nexec cargo run --locked --profile firmware --example clock_probe");
+        let script = format!("{exports}\nexec cargo run --locked --profile firmware --example clock_test");
         let mut shell = Command::new("sh");
         shell.arg("-c").arg(script);
         shell.current_dir(repository("firmware").join(board.name()));

@@ -1,4 +1,4 @@
-//! Rest: the processor stops until a packet or an alarm comes, so that an idle core leaves the host's processors to busy ones.
+//! Sleep: the processor stops until a packet or a timeout, so that an idle core leaves the host's processors to busy ones.
 //!
 //! Interrupts stay masked. A pending one ends wait-for-interrupt all the same, and nobody has to handle it.
 
@@ -29,7 +29,8 @@ const ONE_SHOT: u32 = 0x80 | 0x20 | 0x02 | 0x01;
 const TICKS_PER_MICROSECOND: u32 = node::TICKS_PER_SECOND / 1_000_000;
 
 /// Stops the processor until the Ethernet controller asks for attention or `ticks` of the clock have passed.
-pub fn until_packet_or(ticks: u32) {
+#[inline(never)]
+pub fn until_packet_or_timeout(ticks: u32) {
     TIMER_LOAD.write((ticks / TICKS_PER_MICROSECOND).max(1));
     TIMER_CONTROL.write(ONE_SHOT);
     SECONDARY_ENABLE.write(ETHERNET_INPUT);

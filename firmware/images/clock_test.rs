@@ -3,8 +3,9 @@
 #![no_main]
 
 use board::Core;
-use node::{Clock, Words};
-use runtime::{Board, Exit, die};
+use node::{Clock as _, Text};
+use runtime::clock::Clock;
+use runtime::{Board, ExitCode, report_fault};
 
 /// Rounds of two instructions: 24 million in all, which are 576,000 ticks.
 const ROUNDS: u32 = 12_000_000;
@@ -12,20 +13,24 @@ const EXPECTED: u32 = ROUNDS * 2 / 1000 * 24;
 /// Reading the clock twice takes some instructions, and it counts whole ticks.
 const TOLERANCE: u32 = 2;
 
+runtime::report_panics!(board::Core);
+
 #[board::entry]
 fn start() -> ! {
-    let mut clock = Core::clock();
+    let mut clock = Clock::<Core>::start();
     let before = clock.ticks();
     // SAFETY: counts a register down, and changes nothing but that and the flags.
     unsafe {
         core::arch::asm!("2: subs {0}, {0}, #1", "bne 2b", inout(reg) ROUNDS => _, options(nomem, nostack))
     };
     let ticks = clock.ticks().wrapping_sub(before);
-    let mut words = Words::of("ticks: ");
-    words.decimal(ticks).and(", expected: ").decimal(EXPECTED);
+    let mut line = Text::from("ticks: ");
+    line.push_decimal(ticks)
+        .push_str(", expected: ")
+        .push_decimal(EXPECTED);
     if ticks.abs_diff(EXPECTED) > TOLERANCE {
-        die::<Core>(&words, Exit::Fault);
+        report_fault::<Core>(&line, ExitCode::Fault);
     }
-    Core::say(words.as_str());
-    Core::exit(Exit::Done)
+    Core::println(line.as_str());
+    Core::exit(ExitCode::Success)
 }

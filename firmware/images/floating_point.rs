@@ -7,11 +7,12 @@
 use core::hint::black_box;
 
 use board::Core;
-use runtime::{Board, Exit};
+use panic_halt as _;
+use runtime::{Board, ExitCode};
 
 #[board::entry]
 fn start() -> ! {
     let product = black_box(1.5f32) * black_box(2.0f32);
     black_box(product);
-    Core::exit(Exit::Done)
+    Core::exit(ExitCode::Success)
 }

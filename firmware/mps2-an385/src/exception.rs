@@ -1,24 +1,17 @@
-//! Panics and the processor's exceptions.
-
-use core::panic::PanicInfo;
+//! The processor's exceptions.
 
 use cortex_m::peripheral::SCB;
 use cortex_m_rt::ExceptionFrame;
-use runtime::{exception, panicked};
+use runtime::report_exception;
 
 use crate::Core;
-
-#[panic_handler]
-fn panic(info: &PanicInfo<'_>) -> ! {
-    panicked::<Core>(info)
-}
 
 /// All faults end here: none of the others is enabled.
 #[cortex_m_rt::exception]
 unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
     // SAFETY: the configurable fault status register may be read at any time.
     let status = unsafe { (*SCB::PTR).cfsr.read() };
-    exception::<Core>(cause(status), frame.pc() as usize)
+    report_exception::<Core>(cause(status), frame.pc() as usize)
 }
 
 /// The cause of a fault by the configurable fault status (*ARMv7-M Architecture Reference Manual*, ARM DDI 0403E, B3.2.15).

@@ -4,31 +4,34 @@
 #![no_main]
 
 use board::Core;
-use node::ethernet::Ethernet;
-use node::{Network, SendError, Words};
-use runtime::{Board, Exit, die, memory};
+use node::ethernet::Interface;
+use node::{Network, SendError, Text};
+use runtime::clock::Clock;
+use runtime::{Board, ExitCode, memory, report_fault};
 use wire::{Boot, FromCore, Message, Name};
 
 /// Units that core 0 sends before it fails.
 const GOOD_UNITS: u32 = 3;
 
+runtime::report_panics!(board::Core);
+
 #[board::entry]
 fn start() -> ! {
     memory::paint_stack();
     let Ok(boot) = Boot::decode(memory::boot_block()) else {
-        die::<Core>(&Words::of("bad boot block"), Exit::BadBoot)
+        report_fault::<Core>(&Text::from("bad boot block"), ExitCode::BadBoot)
     };
     let Some(mut controller) = Core::controller(boot.mac()) else {
-        die::<Core>(&Words::of(Core::NO_CONTROLLER), Exit::Fault)
+        report_fault::<Core>(&Text::from(Core::NO_CONTROLLER), ExitCode::Fault)
     };
     let mut network = Failing {
-        network: Ethernet::new(&boot, &mut controller),
+        network: Interface::new(&boot, &mut controller),
         good_units: if boot.core == 0 { GOOD_UNITS } else { u32::MAX },
     };
     let name = Name::new(Core::NAME);
-    match runtime::work(&boot, name, &mut network, &mut Core::clock()) {
-        Ok(_) => Core::exit(Exit::Done),
-        Err(fault) => die::<Core>(&Words::of(fault.as_str()), Exit::Fault),
+    match runtime::work(&boot, name, &mut network, &mut Clock::<Core>::start()) {
+        Ok(_) => Core::exit(ExitCode::Success),
+        Err(fault) => report_fault::<Core>(&Text::from(fault.as_str()), ExitCode::Fault),
     }
 }
 

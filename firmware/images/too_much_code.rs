@@ -5,7 +5,8 @@
 use core::hint::black_box;
 
 use board::Core;
-use runtime::{Board, Exit};
+use panic_halt as _;
+use runtime::{Board, ExitCode};
 
 /// All of code memory, so that nothing is left for code.
 static TOO_MUCH: [u32; 8 * 1024] = [7; 8 * 1024];
@@ -13,5 +14,5 @@ static TOO_MUCH: [u32; 8 * 1024] = [7; 8 * 1024];
 #[board::entry]
 fn start() -> ! {
     black_box(&TOO_MUCH);
-    Core::exit(Exit::Done)
+    Core::exit(ExitCode::Success)
 }

@@ -1,4 +1,4 @@
-//! Rest: the processor stops until a packet or an alarm comes, so that an idle core leaves the host's processors to busy ones.
+//! Sleep: the processor stops until a packet or a timeout, so that an idle core leaves the host's processors to busy ones.
 //!
 //! Interrupts stay masked. A pending one ends wait-for-interrupt all the same (*ARMv7-M Architecture Reference Manual*, ARM DDI
 //! 0403E, B1.5.19), and nobody has to handle it.
@@ -24,7 +24,8 @@ const LONGEST: u32 = (1 << 24) - 1;
 
 /// Stops the processor until the Ethernet controller asks for attention or `ticks` of the clock have passed; for no longer than
 /// two thirds of a second.
-pub fn until_packet_or(ticks: u32) {
+#[inline(never)]
+pub fn until_packet_or_timeout(ticks: u32) {
     interrupt::disable();
     // SAFETY: nobody else uses the system timer or the interrupt controller, and what is set here is taken back below.
     let mut processor = unsafe { Peripherals::steal() };

@@ -9,9 +9,10 @@ mod harness;
 
 use board::Core;
 use harness::Verdict;
-use node::ethernet::Frames;
-use node::{Clock, TICKS_PER_SECOND};
-use runtime::{Board, Exit};
+use node::ethernet::Device;
+use node::{Clock as _, TICKS_PER_SECOND};
+use runtime::clock::Clock;
+use runtime::{Board, ExitCode};
 
 type Controller = <Core as Board>::Controller;
 
@@ -32,7 +33,7 @@ const FLOODED: u32 = 64;
 
 struct Bench {
     controller: Controller,
-    clock: <Core as Board>::Clock,
+    clock: Clock<Core>,
     mac: [u8; 6],
 }
 
@@ -40,12 +41,12 @@ struct Bench {
 fn start() -> ! {
     let mac = [2, 0, 0, 0, 0, 7];
     let Some(controller) = Core::controller(mac) else {
-        Core::say(Core::NO_CONTROLLER);
-        Core::exit(Exit::Fault)
+        Core::println(Core::NO_CONTROLLER);
+        Core::exit(ExitCode::Fault)
     };
     let bench = Bench {
         controller,
-        clock: Core::clock(),
+        clock: Clock::start(),
         mac,
     };
     harness::run(

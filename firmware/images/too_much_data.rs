@@ -7,7 +7,8 @@
 use core::hint::black_box;
 
 use board::Core;
-use runtime::{Board, Exit};
+use panic_halt as _;
+use runtime::{Board, ExitCode};
 
 /// More than half of what the boot block leaves of data memory: it fits by itself, but not with the stacks.
 static mut TOO_MUCH: [u32; 6 * 1024] = [0; 6 * 1024];
@@ -15,5 +16,5 @@ static mut TOO_MUCH: [u32; 6 * 1024] = [0; 6 * 1024];
 #[board::entry]
 fn start() -> ! {
     black_box(&raw mut TOO_MUCH);
-    Core::exit(Exit::Done)
+    Core::exit(ExitCode::Success)
 }

@@ -1,14 +1,16 @@
 //! What the price list's images share: the core as a bench, and a console line a row.
 
 use board::Core;
-use node::{Clock, Words};
+use node::{Clock as _, Text};
 use operations::price::{Bench, called, price};
 use operations::transcript::transcript;
 use operations::{Group, Variant, Visitor};
-use runtime::{Board, Exit};
+use panic_halt as _;
+use runtime::clock::Clock;
+use runtime::{Board, ExitCode};
 
 /// The core that measures itself.
-struct Itself(<Core as Board>::Clock);
+struct Itself(Clock<Core>);
 
 impl Bench for Itself {
     fn ticks(&mut self) -> u32 {
@@ -34,15 +36,15 @@ struct Printer {
 pub(crate) fn print(group: Group) -> ! {
     let cases = group.transcript_cases();
     group.show(&mut Printer { row: 0, cases });
-    Core::exit(Exit::Done)
+    Core::exit(ExitCode::Success)
 }
 
 impl Visitor for Printer {
     #[inline(never)]
     fn visit<V: Variant>(&mut self) {
-        let price = price::<V>(&mut Itself(Core::clock()));
+        let price = price::<V>(&mut Itself(Clock::start()));
         let hash = transcript::<V>(self.cases);
-        let mut line = Words::of("row");
+        let mut line = Text::from("row");
         for word in [
             self.row,
             self.cases,
@@ -53,9 +55,9 @@ impl Visitor for Printer {
             hash as u32,
             called::<V> as *const () as u32,
         ] {
-            line.and(" ").hexadecimal(word);
+            line.push_str(" ").push_hex(word);
         }
-        Core::say(line.as_str());
+        Core::println(line.as_str());
         self.row += 1;
     }
 }
