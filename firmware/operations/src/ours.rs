@@ -1,7 +1,7 @@
 //! Rows of ours and of the published system: no float, and no way to panic.
 
 use fixedmath::random::{Lcg32, Lcg64};
-use fixedmath::{I2F30, I16F16, angle, division, exponential, product, root, unit, warp};
+use fixedmath::{I2F30, I16F16, U0F32, angle, division, exponential, product, root, unit, warp};
 use tracer::arithmetic::{Directions, Published, Sampling};
 use tracer::material::{HemisphereSampling, MalleyDisc};
 use tracer::random::Random;
@@ -120,7 +120,7 @@ pub(crate) fn angles(visitor: &mut impl Visitor) {
         Ours "angle::cos_sin, its cosine" |Turn(turn)| angle::cos_sin(turn).0, I2F30;
     );
     rows!(visitor, CosineAndSine:
-        Published "angle::parabolic_sine, twice" |Turn(turn)| Published::cos_sin(turn), (I16F16, I16F16);
+        Published "angle::parabolic_sine, twice" |Turn(turn)| Published::cos_sin(U0F32::from_bits(turn)), (I16F16, I16F16);
         Ours "angle::linear_cos_sin" |Turn(turn)| angle::linear_cos_sin(turn);
         Ours "angle::quadratic_cos_sin" |Turn(turn)| angle::quadratic_cos_sin(turn);
         Ours "angle::cos_sin" |Turn(turn)| angle::cos_sin(turn);
@@ -171,7 +171,7 @@ fn exponentials(visitor: &mut impl Visitor) {
 /// Points drawn from distributions.
 pub(crate) fn warps(visitor: &mut impl Visitor) {
     rows!(visitor, Tent:
-        Published "tracer::arithmetic::Published::tent" |Fraction(fraction)| Published::tent(fraction), I16F16;
+        Published "tracer::arithmetic::Published::tent" |Fraction(fraction)| Published::tent(U0F32::from_bits(fraction)), I16F16;
         Ours "warp::tent" |Fraction(fraction)| warp::tent(fraction);
     );
     rows!(visitor, Sphere:
@@ -182,7 +182,8 @@ pub(crate) fn warps(visitor: &mut impl Visitor) {
             (normal.map(narrow), square, turn)
         } => ([I16F16; 3], Fraction, Turn),
         |(normal, Fraction(square), Turn(turn))| {
-            MalleyDisc::direction::<Published, _>(normal, &mut Drawn(turn, square))
+            let mut drawn = Drawn(U0F32::from_bits(turn), U0F32::from_bits(square));
+            MalleyDisc::direction::<Published, _>(normal, &mut drawn)
         } => [I16F16; 3], {
             const FUNCTION: Function = Function::LiftedDisc;
         };
@@ -209,15 +210,15 @@ fn has_published_length(v: [I16F16; 3]) -> bool {
 }
 
 /// Two numbers drawn beforehand.
-struct Drawn(u32, u32);
+struct Drawn(U0F32, U0F32);
 
 impl Random for Drawn {
     fn for_unit(seed: u64, id: u32) -> Self {
-        Self(seed as u32, id)
+        Self(U0F32::from_bits(seed as u32), U0F32::from_bits(id))
     }
 
     #[inline(always)]
-    fn fraction(&mut self) -> u32 {
+    fn fraction(&mut self) -> U0F32 {
         let Self(first, second) = *self;
         self.0 = second;
         first

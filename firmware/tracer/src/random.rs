@@ -1,5 +1,6 @@
 //! Random numbers: one stream a unit.
 
+use fixedmath::U0F32;
 use fixedmath::random::{Lcg32, Lcg64};
 
 /// A stream of uniform fractions that belongs to one unit of one render.
@@ -7,8 +8,8 @@ pub trait Random {
     /// The stream of unit `id` in the render seeded with `seed`.
     fn for_unit(seed: u64, id: u32) -> Self;
 
-    /// The next number, as the 32 bits of a fraction in [0, 1).
-    fn fraction(&mut self) -> u32;
+    /// The next number.
+    fn fraction(&mut self) -> U0F32;
 }
 
 /// 2^64 over the golden ratio, rounded to the even number above, whose continued fraction stays that of the golden ratio
@@ -36,8 +37,8 @@ impl Random for FullState {
     }
 
     #[inline]
-    fn fraction(&mut self) -> u32 {
-        self.0.next_fraction()
+    fn fraction(&mut self) -> U0F32 {
+        U0F32::from_bits(self.0.next_fraction())
     }
 }
 
@@ -53,8 +54,8 @@ impl Random for LowBits {
     }
 
     #[inline]
-    fn fraction(&mut self) -> u32 {
-        u32::from(self.0.low_bits()) << 16
+    fn fraction(&mut self) -> U0F32 {
+        U0F32::from_bits(u32::from(self.0.low_bits()) << 16)
     }
 }
 

@@ -1,6 +1,6 @@
 //! Our number formats against double precision: every operation within its stated bound.
 
-use fixedmath::{I1F31, I2F30, I4F28, I16F16, U19F45, random::Lcg64};
+use fixedmath::{I1F31, I2F30, I4F28, I16F16, U0F32, U19F45, random::Lcg64};
 use tracer::arithmetic::{Directions, Mixed, Sampling};
 use tracer::camera::FilmNumbers;
 use tracer::geometry::sphere::{Reciprocal, SphereNumbers};
@@ -157,8 +157,8 @@ fn film_positions_step_evenly_over_the_whole_width() {
 fn roots_of_fractions_are_exact_to_half_an_ulp() {
     let mut draw = Draw::new(5);
     for _ in 0..500_000 {
-        let fraction = draw.0.next_fraction() >> (draw.0.next_fraction() >> 28);
-        let exact = (f64::from(fraction) / 4_294_967_296.0).sqrt();
+        let fraction = U0F32::from_bits(draw.0.next_fraction() >> (draw.0.next_fraction() >> 28));
+        let exact = f64::from(fraction).sqrt();
         assert!((Mixed::root_of(fraction).to_num::<f64>() - exact).abs() <= 0.5001 * ULP30);
         let z = Mixed::signed(fraction);
         let exact = (1.0 - z.to_num::<f64>().powi(2)).sqrt();

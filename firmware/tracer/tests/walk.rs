@@ -2,7 +2,7 @@
 
 mod support;
 
-use fixedmath::{I2F30, I16F16, U16F16, U48F16};
+use fixedmath::{I2F30, I16F16, U0F32, U16F16, U48F16};
 use support::{Blob, GLASS, Sphere, blob, camera, sphere};
 use tracer::aggregate::Aggregate;
 use tracer::arithmetic::{Directions, Formats, Mixed, Published, Sampling};
@@ -401,7 +401,7 @@ fn units_cover_every_sample_once() {
 #[test]
 fn streams_of_units_do_not_overlap() {
     // That they cannot is arithmetic (tracer::random); that the stride is really taken is seen here.
-    let first: Vec<u32> = {
+    let first: Vec<U0F32> = {
         let mut r = FullState::for_unit(5, 0);
         (0..1000).map(|_| r.fraction()).collect()
     };

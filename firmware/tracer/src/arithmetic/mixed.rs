@@ -1,6 +1,6 @@
 //! Ours: lengths in 16:16, directions in 2:30, squares in 32:32.
 
-use fixedmath::{I2F30, I16F16, angle, product, root, unit, warp};
+use fixedmath::{I2F30, I16F16, U0F32, angle, product, root, unit, warp};
 
 use super::{Directions, Formats, Sampling};
 
@@ -67,19 +67,19 @@ impl Directions for Mixed {
 
 impl Sampling for Mixed {
     #[inline]
-    fn cos_sin(turn: u32) -> (I2F30, I2F30) {
-        angle::cos_sin(turn)
+    fn cos_sin(turn: U0F32) -> (I2F30, I2F30) {
+        angle::cos_sin(turn.to_bits())
     }
 
     #[inline]
-    fn signed(fraction: u32) -> I2F30 {
-        I2F30::from_bits((fraction ^ 1 << 31) as i32 >> 1)
+    fn signed(fraction: U0F32) -> I2F30 {
+        I2F30::from_bits((fraction.to_bits() ^ 1 << 31) as i32 >> 1)
     }
 
     #[inline]
-    fn root_of(fraction: u32) -> I2F30 {
+    fn root_of(fraction: U0F32) -> I2F30 {
         // The root of a 0:32 fraction shifted to 0:60 has 30 bits.
-        I2F30::from_bits(root::nearest(u64::from(fraction) << 28) as i32)
+        I2F30::from_bits(root::nearest(u64::from(fraction.to_bits()) << 28) as i32)
     }
 
     #[inline]
@@ -89,17 +89,17 @@ impl Sampling for Mixed {
     }
 
     #[inline]
-    fn below(fraction: u32, probability: I2F30) -> bool {
-        ((fraction >> 2) as i32) < probability.to_bits()
+    fn below(fraction: U0F32, probability: I2F30) -> bool {
+        ((fraction.to_bits() >> 2) as i32) < probability.to_bits()
     }
 
     #[inline]
-    fn tent(fraction: u32) -> I2F30 {
-        warp::tent(fraction)
+    fn tent(fraction: U0F32) -> I2F30 {
+        warp::tent(fraction.to_bits())
     }
 
     #[inline]
-    fn on_sphere(height: u32, turn: u32) -> [I2F30; 3] {
-        warp::sphere(height, turn)
+    fn on_sphere(height: U0F32, turn: U0F32) -> [I2F30; 3] {
+        warp::sphere(height.to_bits(), turn.to_bits())
     }
 }

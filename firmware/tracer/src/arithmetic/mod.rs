@@ -12,7 +12,7 @@ pub use published::Published;
 use core::fmt::Debug;
 use core::ops::{Add, Neg, Sub};
 
-use fixedmath::{I2F30, I16F16};
+use fixedmath::{I2F30, I16F16, U0F32};
 
 use crate::camera::FilmNumbers;
 use crate::geometry::ShapeNumbers;
@@ -77,28 +77,31 @@ pub trait Directions: Formats {
     fn renormalised(v: [Self::Unit; 3]) -> [Self::Unit; 3];
 }
 
-/// Samples from uniform fractions, which are the 32 bits of numbers in [0, 1).
+/// Of a fraction.
+const HALF: U0F32 = U0F32::from_bits(1 << 31);
+
+/// Samples from uniform fractions.
 pub trait Sampling: Directions {
-    /// Cosine and sine of `turn` / 2^32 turns.
-    fn cos_sin(turn: u32) -> (Self::Unit, Self::Unit);
-    /// `fraction` / 2^31 - 1: uniform in [-1, 1).
-    fn signed(fraction: u32) -> Self::Unit;
-    /// The root of `fraction` / 2^32.
-    fn root_of(fraction: u32) -> Self::Unit;
+    /// Cosine and sine of a part of a turn.
+    fn cos_sin(turn: U0F32) -> (Self::Unit, Self::Unit);
+    /// 2 `fraction` - 1: uniform in [-1, 1).
+    fn signed(fraction: U0F32) -> Self::Unit;
+    /// The root of a fraction.
+    fn root_of(fraction: U0F32) -> Self::Unit;
     /// `sqrt(1 - z^2)`.
     fn complement(z: Self::Unit) -> Self::Unit;
-    /// Whether `fraction` / 2^32 lies below a probability.
-    fn below(fraction: u32, probability: Self::Unit) -> bool;
+    /// Whether a fraction lies below a probability.
+    fn below(fraction: U0F32, probability: Self::Unit) -> bool;
 
     /// The tent filter's distribution on (-1, 1), by inversion. The top bit of the fraction says which slope, the others how
     /// far up it.
-    fn tent(fraction: u32) -> Self::Unit {
-        let offset = Self::ONE - Self::root_of(fraction << 1 | 1);
-        if fraction >> 31 == 0 { -offset } else { offset }
+    fn tent(fraction: U0F32) -> Self::Unit {
+        let offset = Self::ONE - Self::root_of(fraction << 1 | U0F32::DELTA);
+        if fraction < HALF { -offset } else { offset }
     }
 
     /// A point of the unit sphere, uniform by area.
-    fn on_sphere(height: u32, turn: u32) -> [Self::Unit; 3] {
+    fn on_sphere(height: U0F32, turn: U0F32) -> [Self::Unit; 3] {
         let height = Self::signed(height);
         let (cosine, sine) = Self::cos_sin(turn);
         let radius = Self::complement(height);

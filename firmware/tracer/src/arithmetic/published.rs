@@ -1,6 +1,6 @@
 //! The published system's: 16:16 throughout, 64-bit intermediates kept to the root.
 
-use fixedmath::{I2F30, I16F16, I48F16, angle, division, product, root};
+use fixedmath::{I2F30, I16F16, I48F16, U0F32, angle, division, product, root};
 
 use super::{Directions, Formats, Sampling};
 use crate::geometry::vector;
@@ -64,26 +64,26 @@ impl Directions for Published {
 }
 
 impl Sampling for Published {
-    fn cos_sin(turn: u32) -> (I16F16, I16F16) {
+    fn cos_sin(turn: U0F32) -> (I16F16, I16F16) {
         (
-            angle::parabolic_sine(turn.wrapping_add(1 << 30)),
-            angle::parabolic_sine(turn),
+            angle::parabolic_sine(turn.to_bits().wrapping_add(1 << 30)),
+            angle::parabolic_sine(turn.to_bits()),
         )
     }
 
-    fn signed(fraction: u32) -> I16F16 {
-        I16F16::from_bits((fraction ^ 1 << 31) as i32 >> 15)
+    fn signed(fraction: U0F32) -> I16F16 {
+        I16F16::from_bits((fraction.to_bits() ^ 1 << 31) as i32 >> 15)
     }
 
-    fn root_of(fraction: u32) -> I16F16 {
-        root::restoring(I16F16::from_bits((fraction >> 16) as i32))
+    fn root_of(fraction: U0F32) -> I16F16 {
+        root::restoring(I16F16::from_bits((fraction.to_bits() >> 16) as i32))
     }
 
     fn complement(z: I16F16) -> I16F16 {
         root::restoring(Self::ONE - product::truncated(z, z))
     }
 
-    fn below(fraction: u32, probability: I16F16) -> bool {
-        ((fraction >> 16) as i32) < probability.to_bits()
+    fn below(fraction: U0F32, probability: I16F16) -> bool {
+        ((fraction.to_bits() >> 16) as i32) < probability.to_bits()
     }
 }

@@ -20,13 +20,13 @@ pub enum Width {
 pub fn unit_after_unit<R: Random>(seed: u64) -> impl Iterator<Item = u32> {
     (0..=u32::MAX).flat_map(move |id| {
         let mut random = R::for_unit(seed, id);
-        (0..DRAWS).map(move |_| random.fraction())
+        (0..DRAWS).map(move |_| random.fraction().to_bits())
     })
 }
 
 /// The first number of each unit.
 pub fn first_of_units<R: Random>(seed: u64) -> impl Iterator<Item = u32> {
-    (0..=u32::MAX).map(move |id| R::for_unit(seed, id).fraction())
+    (0..=u32::MAX).map(move |id| R::for_unit(seed, id).fraction().to_bits())
 }
 
 /// Writes the bits of `numbers` and no others as 32-bit words of this machine, until the reader has had enough.
@@ -65,7 +65,11 @@ mod tests {
     fn units_follow_each_other() {
         let numbers: Vec<u32> = unit_after_unit::<FullState>(7).take(2 * DRAWS).collect();
         let mut second = FullState::for_unit(7, 1);
-        assert!(numbers[DRAWS..].iter().all(|&number| number == second.fraction()));
+        assert!(
+            numbers[DRAWS..]
+                .iter()
+                .all(|&number| number == second.fraction().to_bits())
+        );
         let first: Vec<u32> = first_of_units::<FullState>(7).take(2).collect();
         assert_eq!(first, [numbers[0], numbers[DRAWS]]);
     }

@@ -14,11 +14,6 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// The 32 bits of a fraction in [0, 1).
-fn fraction(bits: u32) -> f64 {
-    f64::from(bits) / 4_294_967_296.0
-}
-
 impl Formats for Double {
     type Length = f64;
     type Unit = f64;
@@ -69,25 +64,25 @@ impl Directions for Double {
 }
 
 impl Sampling for Double {
-    fn cos_sin(turn: u32) -> (f64, f64) {
-        let (sine, cosine) = (fraction(turn) * std::f64::consts::TAU).sin_cos();
+    fn cos_sin(turn: U0F32) -> (f64, f64) {
+        let (sine, cosine) = (f64::from(turn) * std::f64::consts::TAU).sin_cos();
         (cosine, sine)
     }
 
-    fn signed(bits: u32) -> f64 {
-        2.0 * fraction(bits) - 1.0
+    fn signed(fraction: U0F32) -> f64 {
+        2.0 * f64::from(fraction) - 1.0
     }
 
-    fn root_of(bits: u32) -> f64 {
-        fraction(bits).sqrt()
+    fn root_of(fraction: U0F32) -> f64 {
+        f64::from(fraction).sqrt()
     }
 
     fn complement(z: f64) -> f64 {
         (1.0 - z * z).sqrt()
     }
 
-    fn below(bits: u32, probability: f64) -> bool {
-        fraction(bits) < probability
+    fn below(fraction: U0F32, probability: f64) -> bool {
+        f64::from(fraction) < probability
     }
 }
 
