@@ -3,7 +3,7 @@
 use fixedmath::random::Lcg64;
 use fixedmath::{I2F30, I16F16, I32F32, I48F16};
 
-use crate::Input;
+use crate::number::Input;
 
 /// A number of any magnitude, but not 0.
 fn word(random: &mut Lcg64) -> i64 {

@@ -3,64 +3,9 @@
 use fixedmath::random::Lcg64;
 use fixedmath::{I2F30, I16F16, I32F32, I48F16, product, warp};
 
+use crate::hard;
 use crate::number::{Direction, Exponent, Fraction, Turn};
-use crate::{Operation, hard};
-
-/// What an operation approaches. The host has a truth for each.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Function {
-    /// `a b`.
-    Product,
-    /// `a . b` of two vectors.
-    Dot,
-    /// `a + b c`.
-    ProductSum,
-    /// `x` itself, in another format.
-    Identity,
-    /// `a / b`.
-    Quotient,
-    /// `1 / x`.
-    Reciprocal,
-    /// `sqrt(x)`.
-    SquareRoot,
-    /// `1 / sqrt(x)`.
-    ReciprocalSquareRoot,
-    /// `sin(x)`.
-    Sine,
-    /// `cos(x)`.
-    Cosine,
-    /// `cos(x)` and `sin(x)`.
-    CosineAndSine,
-    /// The angle of the vector `(x, y)` from the x axis, in radians and but for whole turns.
-    Angle,
-    /// `e^x`.
-    Exponential,
-    /// `|v|`.
-    Length,
-    /// `v / |v|`.
-    UnitVector,
-    /// The tent filter's point for a uniform number: the upper half of numbers rises from 0 to 1, the lower from -1 to 0.
-    Tent,
-    /// A point of the unit sphere: height from a uniform number, and angle.
-    Sphere,
-    /// A direction about a normal, through a point of the unit sphere set on its tip: normal, height from a uniform number, angle.
-    OffsetSphere,
-    /// A direction about a normal, lifted from the unit disc in smallpt's basis: normal, squared radius, angle.
-    LiftedDisc,
-    /// No function of real numbers.
-    RandomNumber,
-}
-
-/// A fixed-point format.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Format {
-    /// Magnitudes stay below 2 to this power.
-    pub integer_bits: i32,
-    /// An ulp is 2 to minus this power.
-    pub fraction_bits: i32,
-    /// Whether there are negative numbers.
-    pub signed: bool,
-}
+use crate::operation::{Format, Function, Operation};
 
 const fn format(integer_bits: i32, fraction_bits: i32) -> Format {
     Format {

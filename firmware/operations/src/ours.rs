@@ -7,8 +7,9 @@ use tracer::material::{HemisphereSampling, MalleyDisc};
 use tracer::random::Random;
 
 use crate::number::{Direction, Exponent, Fraction, Turn};
+use crate::operation::Function;
 use crate::row::{converted_rows, rows};
-use crate::{Function, Visitor};
+use crate::variant::Visitor;
 
 /// Products, quotients, exponentials and random numbers.
 pub(crate) fn arithmetic(visitor: &mut impl Visitor) {

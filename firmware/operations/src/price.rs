@@ -8,7 +8,8 @@
 
 use fixedmath::random::Lcg64;
 
-use crate::{Number, Variant, draw};
+use crate::number::Number;
+use crate::variant::{Variant, draw};
 
 /// Inputs drawn for a price.
 pub const CASES: usize = 256;

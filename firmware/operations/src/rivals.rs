@@ -4,9 +4,9 @@
 use fixedmath::I16F16;
 use micromath::F32;
 
-use crate::Visitor;
 use crate::number::{Exponent, Turn};
 use crate::row::converted_rows;
+use crate::variant::Visitor;
 
 fn float(x: I16F16) -> f32 {
     x.to_num()

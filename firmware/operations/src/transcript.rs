@@ -2,8 +2,9 @@
 
 use fixedmath::random::Lcg64;
 
+use crate::number::{Input, Number};
 use crate::price::called;
-use crate::{Input, Number, Variant, accepts};
+use crate::variant::{Variant, accepts};
 
 /// The hash of the outputs for `cases` drawn inputs: FNV-1a of 64 bits, a word at a time.
 #[inline(never)]
