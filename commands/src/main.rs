@@ -1,10 +1,14 @@
 //! The project's commands, which `cargo xtask` builds and starts. Thin: each verb is one file, and what a test needs to reach is in the host library.
 
 mod bench;
+mod check;
+mod fuzz;
 mod gdb;
+mod licences;
 mod qemu_run;
 mod render;
 mod size;
+mod step;
 mod test;
 mod toolchain;
 mod trace;
@@ -30,6 +34,13 @@ enum Verb {
     Render(render::Arguments),
     /// Run everything that CI runs
     Test(test::Arguments),
+    /// Run what needs no emulator: format, licences, lints, unit tests
+    Check(check::Arguments),
+    /// Fuzz everything that is read from outside, with libFuzzer
+    ///
+    /// Starts from what this code writes, and from fuzz/corpus. What it finds stays in fuzz/ of the target folder, and what it fails on
+    /// is shown and kept there.
+    Fuzz(fuzz::Arguments),
     /// Run one image on one emulated core; the exit code is the core's
     QemuRun(qemu_run::Arguments),
     /// Print the variables with which plain cargo builds and runs a board's crate, for a shell to evaluate
@@ -109,6 +120,8 @@ fn run(verb: Verb) -> anyhow::Result<ExitCode> {
     match verb {
         Verb::Render(arguments) => render::run(&arguments, interrupted),
         Verb::Test(arguments) => test::run(&arguments),
+        Verb::Check(arguments) => check::run(&arguments),
+        Verb::Fuzz(arguments) => fuzz::run(&arguments),
         Verb::QemuRun(arguments) => qemu_run::run(&arguments),
         Verb::Toolchain(arguments) => toolchain::run(&arguments),
         Verb::Gdb(arguments) => gdb::run(&arguments),

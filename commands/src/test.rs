@@ -1,10 +1,9 @@
 //! `cargo xtask test`
 
 use std::panic::resume_unwind;
-use std::path::Path;
-use std::process::{Command, ExitCode, Stdio};
+use std::process::ExitCode;
 use std::thread;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use anyhow::{Context, bail};
 use host::firmware::Level;
@@ -12,16 +11,19 @@ use host::firmware::arithmetic::Arithmetic;
 use host::firmware::board::Board;
 use host::firmware::{self, Capability, Recipe};
 use host::platform::console::say;
-use host::platform::interrupt;
 use host::platform::setup::{self, Toolchain, Wanted};
-use host::platform::workspace::{self, NoWorkspace};
+use host::platform::workspace;
 use host::scene::{Scene, compile};
 
-use crate::{SetUp, size, verify};
+use crate::step::{cargo, seconds, shown, step, succeed};
+use crate::{SetUp, check, fuzz, size, verify};
 
 /// Arguments of `test`.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
+    /// How long each fuzz target runs
+    #[arg(long, value_name = "N", default_value_t = fuzz::SECONDS)]
+    fuzz_seconds: u32,
     #[command(flatten)]
     set_up: SetUp,
 }
@@ -36,6 +38,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
         tshark: true,
         system_linker: true,
         system_compiler: true,
+        cxx: true,
         ..Wanted::default()
     };
     let tools = step("set-up", || {
@@ -68,6 +71,8 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
             "--show-output",
         ])?)
     })?;
+    step("fuzz targets", fuzz::build)?;
+    step("fuzzing", || fuzz::all(arguments.fuzz_seconds))?;
     step("documentation", || {
         let mut command = cargo(&["doc", "--release", "--no-deps"])?;
         command.env("RUSTDOCFLAGS", "--deny warnings");
@@ -78,18 +83,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
 }
 
 fn host_steps() -> anyhow::Result<()> {
-    step("format", || succeed(cargo(&["fmt", "--all", "--check"])?))?;
-    step("lints", || {
-        // As a release build, whose procedural macros and build scripts the tests need anyway.
-        succeed(cargo(&[
-            "clippy",
-            "--release",
-            "--all-targets",
-            "--",
-            "--deny",
-            "warnings",
-        ])?)
-    })?;
+    check::steps()?;
     step("fixedmath as a package", || {
         succeed(cargo(&[
             "package",
@@ -114,26 +108,6 @@ fn host_steps() -> anyhow::Result<()> {
             "--package",
             "node",
         ])?)
-    })?;
-    step("tests, release build", || {
-        shown(cargo(&[
-            "test",
-            "--quiet",
-            "--release",
-            "--workspace",
-            "--exclude",
-            "runtime",
-            "--exclude",
-            "versatilepb",
-            "--exclude",
-            "mps2-an385",
-            "--exclude",
-            "whole-system",
-            "--exclude",
-            "commands",
-        ])?)?;
-        // Alone, they are tested with the host's library that they were built with: the others' tests need another one.
-        shown(cargo(&["test", "--quiet", "--release", "--package", "commands"])?)
     })?;
     step("arithmetic against the truth", || verify::sampled().map(|_| ()))
 }
@@ -166,51 +140,4 @@ fn lint_firmware(toolchain: &Toolchain, scene: &Scene) -> anyhow::Result<()> {
         succeed(command)?;
     }
     Ok(())
-}
-
-fn cargo(arguments: &[&str]) -> Result<Command, NoWorkspace> {
-    // The cargo that runs this program, in the toolchain that was chosen for it.
-    let program = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    let mut command = Command::new(program);
-    command.args(arguments).current_dir(workspace::root()?);
-    Ok(command)
-}
-
-/// Names a step, does it, and says how long it took.
-fn step<T>(name: &str, action: impl FnOnce() -> anyhow::Result<T>) -> anyhow::Result<T> {
-    say(format!("{name} ..."))?;
-    let start = Instant::now();
-    let done = action().with_context(|| format!("{name} failed"))?;
-    say(format!("{name}: passed in {}", seconds(start.elapsed())))?;
-    Ok(done)
-}
-
-/// Runs a command that speaks for itself.
-fn shown(mut command: Command) -> anyhow::Result<()> {
-    let program = Path::new(command.get_program()).display().to_string();
-    let status =
-        interrupt::status(command.stdin(Stdio::null())).with_context(|| format!("cannot start {program}"))?;
-    if !status.success() {
-        bail!("{command:?} ended with {status}");
-    }
-    Ok(())
-}
-
-/// Runs a command; what it says is shown only if it fails.
-fn succeed(mut command: Command) -> anyhow::Result<()> {
-    let program = Path::new(command.get_program()).display().to_string();
-    let output = interrupt::output(&mut command).with_context(|| format!("cannot start {program}"))?;
-    if !output.status.success() {
-        let said = [output.stdout, output.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
-        bail!(
-            "{command:?} ended with {}:\n{}",
-            output.status,
-            said.concat().trim_end()
-        );
-    }
-    Ok(())
-}
-
-fn seconds(time: Duration) -> String {
-    format!("{:.1} s", time.as_secs_f64())
 }

@@ -5,8 +5,10 @@
 //! written by one run serves the next with everything a comparison needs. Other programs show R, G, B and ignore the
 //! rest.
 
+use std::io::{BufReader, Seek};
 use std::path::{Path, PathBuf};
 
+use exr::meta::MetaData;
 use exr::prelude::{
     AnyChannel, AnyChannels, AttributeValue, Encoding, FlatSamples, Image, Layer, LayerAttributes,
     ReadChannels, ReadLayers, Text, WritableImage,
@@ -18,6 +20,10 @@ use crate::platform::file::{WriteError, write_whole};
 const COLOURS: [&str; 3] = ["R", "G", "B"];
 const VARIANCES: [&str; 3] = ["variance.R", "variance.G", "variance.B"];
 const SPP: &str = "samplesPerPixel";
+
+/// Bytes of samples that a file may announce: a GiB. As many are asked for before the first is read, so a few wrong bytes in a header
+/// could ask for more than there is.
+const MAX_SAMPLES: usize = 1 << 30;
 
 /// A picture that could not be read.
 #[derive(Debug, thiserror::Error)]
@@ -73,14 +79,18 @@ pub fn read(path: &Path) -> Result<Estimate, ReadError> {
         path: path.to_owned(),
         cause,
     };
-    let file = std::fs::File::open(path).map_err(|source| error(source.to_string()))?;
+    let mut file = std::fs::File::open(path).map_err(|source| error(source.to_string()))?;
+    if announced(&file).map_err(|source| error(source.to_string()))? > MAX_SAMPLES {
+        return Err(error("it says that it has more than a GiB of samples".to_owned()));
+    }
+    file.rewind().map_err(|source| error(source.to_string()))?;
     let image = exr::prelude::read()
         .no_deep_data()
         .largest_resolution_level()
         .all_channels()
         .all_layers()
         .all_attributes()
-        .from_buffered(std::io::BufReader::new(file))
+        .from_buffered(BufReader::new(file))
         .map_err(|source| error(source.to_string()))?;
     let (layer, colours) = image
         .layer_data
@@ -109,6 +119,16 @@ pub fn read(path: &Path) -> Result<Estimate, ReadError> {
         variance,
         spp,
     })
+}
+
+/// Bytes of all samples, by the headers of the file's layers.
+fn announced(file: &std::fs::File) -> Result<usize, exr::error::Error> {
+    let layers = MetaData::read_from_buffered(BufReader::new(file), false)?.headers;
+    let bytes = layers.iter().map(|layer| {
+        let pixels = layer.layer_size.x().saturating_mul(layer.layer_size.y());
+        pixels.saturating_mul(layer.channels.bytes_per_pixel)
+    });
+    Ok(bytes.fold(0, usize::saturating_add))
 }
 
 /// Three channels of a layer as one list of triples; `None` when one of them is missing.
@@ -182,6 +202,26 @@ mod tests {
                 .to_string()
                 .contains("missing.exr")
         );
+    }
+
+    #[test]
+    fn a_header_that_announces_more_than_memory_holds_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("huge.exr");
+        write(&path, &estimate()).unwrap();
+        let mut bytes = std::fs::read(&path).unwrap();
+        let window = b"dataWindow\0box2i\0\x10\0\0\0";
+        let at = bytes
+            .windows(window.len())
+            .position(|place| place == window)
+            .unwrap()
+            + window.len();
+        for corner in [at + 8, at + 12] {
+            bytes[corner..corner + 4].copy_from_slice(&0x3000_0000_i32.to_le_bytes());
+        }
+        std::fs::write(&path, bytes).unwrap();
+        let message = read(&path).unwrap_err().to_string();
+        assert!(message.contains("more than a GiB"), "{message}");
     }
 
     #[test]

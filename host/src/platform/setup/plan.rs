@@ -24,6 +24,8 @@ pub struct Wanted {
     pub system_linker: bool,
     /// The compiler of such a machine, with its library's source.
     pub system_compiler: bool,
+    /// A compiler for libFuzzer, which is C++.
+    pub cxx: bool,
 }
 
 /// A Rust compiler found on the machine, recent enough for this workspace.
@@ -82,6 +84,8 @@ pub struct Facts {
     pub system_linker: Option<PathBuf>,
     /// Debian's packages have put a compiler and the source of its library into /usr, recent enough for this workspace.
     pub system_compiler: bool,
+    /// `c++`.
+    pub cxx: bool,
     /// `cargo fmt` works with the cargo in use.
     pub rustfmt: bool,
     /// `cargo clippy` works with the cargo in use.
@@ -184,6 +188,7 @@ const SOURCE: &str = "a Rust compiler with the source of its library (rust-src)"
 const LINKER: &str = "a linker for the boards (rust-lld or ld.lld)";
 const SYSTEM_LINKER: &str = "the linker of machines without rustup (ld.lld)";
 const SYSTEM_COMPILER: &str = "the compiler of machines without rustup (rustc-web)";
+const CXX: &str = "a compiler for libFuzzer (c++)";
 const RUSTFMT: &str = "cargo fmt";
 const CLIPPY: &str = "cargo clippy";
 const FIRMWARE_CLIPPY: &str = "clippy for the compiler of the boards";
@@ -195,7 +200,7 @@ struct Gap {
     packages: &'static [&'static str],
 }
 
-const GAPS: [Gap; 11] = [
+const GAPS: [Gap; 12] = [
     Gap {
         name: QEMU,
         component: None,
@@ -237,6 +242,11 @@ const GAPS: [Gap; 11] = [
         packages: &["rustc-web", "cargo-web", "rust-web-src"],
     },
     Gap {
+        name: CXX,
+        component: None,
+        packages: &["g++"],
+    },
+    Gap {
         name: RUSTFMT,
         component: Some("rustfmt"),
         packages: &["rustfmt-web"],
@@ -266,6 +276,7 @@ pub fn decide(facts: &Facts, wanted: Wanted) -> Plan {
         LINKER => lacks_linker,
         SYSTEM_LINKER => wanted.system_linker && facts.system_linker.is_none() && !lacks_linker,
         SYSTEM_COMPILER => wanted.system_compiler && !facts.system_compiler,
+        CXX => wanted.cxx && !facts.cxx,
         RUSTFMT => wanted.lints && !facts.rustfmt,
         CLIPPY => wanted.lints && !facts.clippy,
         _ => wanted.lints && wanted.firmware && lacks_second_clippy(facts),
@@ -318,7 +329,7 @@ fn fill(gaps: &[&Gap], facts: &Facts) -> Plan {
         }
         (false, Apt::Absent) => {
             let advice = "this is not a Debian, so install them with this system's own means: the programs \
-                          qemu-system-arm, gdb-multiarch, tshark, ld.lld and dieharder in PATH, and the rustup components \
+                          qemu-system-arm, gdb-multiarch, tshark, ld.lld, c++ and dieharder in PATH, and the rustup components \
                           rust-src, rustfmt and clippy";
             return Plan::ByHand {
                 missing,

@@ -11,6 +11,7 @@ const ALL: Wanted = Wanted {
     tshark: false,
     system_linker: false,
     system_compiler: false,
+    cxx: false,
 };
 
 fn compiler(at: &str, has_source: bool) -> Compiler {
@@ -33,6 +34,7 @@ fn fresh() -> Facts {
         linker: Some("/rustup/rust-lld".into()),
         system_linker: None,
         system_compiler: false,
+        cxx: false,
         rustfmt: true,
         clippy: true,
         rustup: Rustup::Present,
@@ -153,6 +155,8 @@ fn only_what_is_wanted_is_installed() {
         ..native
     };
     assert!(announced(&facts, packets).ends_with("--no-install-recommends tshark"));
+    let fuzzing = Wanted { cxx: true, ..native };
+    assert!(announced(&facts, fuzzing).ends_with("--no-install-recommends g++"));
 }
 
 #[test]

@@ -36,6 +36,7 @@ pub fn survey() -> Facts {
             .or_else(|| system_linker.clone()),
         system_linker,
         system_compiler,
+        cxx: program("c++").is_some(),
         rustfmt: in_use
             .as_deref()
             .is_some_and(|sysroot| sysroot.join("bin/cargo-fmt").is_file()),

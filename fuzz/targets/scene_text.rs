@@ -7,7 +7,8 @@ use tracer::geometry::sphere::SphereRecord;
 
 /// 1/r is right to 2^-28: the stored radius times the stored reciprocal is 2^60, less what its last bit is worth.
 fn check(record: &SphereRecord) {
-    let product = (i64::from(record.radius.to_bits()) << record.shift) * i64::from(record.reciprocal.to_bits());
+    let product =
+        (i64::from(record.radius.to_bits()) << record.shift) * i64::from(record.reciprocal.to_bits());
     assert!(((1 << 60) - product).abs() <= 1 << 32, "{record:?}");
 }
 
@@ -21,7 +22,13 @@ fuzz_target!(|text: &str| {
         }
         let compiled = compile(&scene, width, height);
         let primitives = compiled.view().aggregate.primitives;
-        primitives.hollow_spheres.iter().for_each(|sphere| check(&sphere.0));
-        primitives.solid_spheres.iter().for_each(|sphere| check(&sphere.0));
+        primitives
+            .hollow_spheres
+            .iter()
+            .for_each(|sphere| check(&sphere.0));
+        primitives
+            .solid_spheres
+            .iter()
+            .for_each(|sphere| check(&sphere.0));
     }
 });

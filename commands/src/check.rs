@@ -1,0 +1,61 @@
+//! `cargo xtask check`: what needs neither an emulator nor the firmware's compiler, and is done before anything is submitted.
+
+use std::process::ExitCode;
+use std::time::Instant;
+
+use host::platform::console::say;
+use host::platform::setup::{self, Wanted};
+
+use crate::step::{cargo, seconds, shown, step, succeed};
+use crate::{SetUp, licences};
+
+/// Arguments of `check`.
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    set_up: SetUp,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
+    let start = Instant::now();
+    let wanted = Wanted {
+        lints: true,
+        ..Wanted::default()
+    };
+    step("set-up", || {
+        Ok(setup::ensure(wanted, arguments.set_up.install())?)
+    })?;
+    steps()?;
+    say(format!("all passed in {}", seconds(start.elapsed())))?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The steps, which are the first of `cargo xtask test`, too.
+pub(crate) fn steps() -> anyhow::Result<()> {
+    step("format", || succeed(cargo(&["fmt", "--all", "--check"])?))?;
+    step("licences", licences::check)?;
+    step("lints", || {
+        // As a release build, whose procedural macros and build scripts the tests need anyway.
+        let words = ["clippy", "--release", "--all-targets", "--", "--deny", "warnings"];
+        succeed(cargo(&words)?)
+    })?;
+    step("unit tests", unit_tests)
+}
+
+/// All but the whole system's, as a release build.
+fn unit_tests() -> anyhow::Result<()> {
+    // What has no tests on the host, and what is tested apart.
+    let apart = [
+        "runtime",
+        "versatilepb",
+        "mps2-an385",
+        "fuzz",
+        "whole-system",
+        "commands",
+    ];
+    let mut all = cargo(&["test", "--quiet", "--release", "--workspace"])?;
+    all.args(apart.iter().flat_map(|package| ["--exclude", package]));
+    shown(all)?;
+    // Alone, these are tested with the host's library that they were built with: the others' tests need another one.
+    shown(cargo(&["test", "--quiet", "--release", "--package", "commands"])?)
+}
