@@ -16,7 +16,6 @@ fn round_trip<T: Serialize + DeserializeOwned + Debug>(bytes: &[u8]) {
     };
     let text = serde_json::to_string(&value).expect("it is written");
     let again: T = serde_json::from_str(&text).expect("what was written is read");
-    // Compared as text, because what is written of a float is not always read as the same one.
     let second = serde_json::to_string(&again).expect("it is written");
     assert_eq!(second, text);
 }

@@ -70,7 +70,15 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
 
 /// Lints and builds the targets, and builds our own crates with what tells libFuzzer the ways they go.
 pub(crate) fn build() -> anyhow::Result<()> {
-    succeed(cargo(&["clippy", "--release", "--package", "fuzz", "--", "--deny", "warnings"])?)?;
+    succeed(cargo(&[
+        "clippy",
+        "--release",
+        "--package",
+        "fuzz",
+        "--",
+        "--deny",
+        "warnings",
+    ])?)?;
     let mut command = cargo(&["build", "--release", "--package", "fuzz"])?;
     command.env("RUSTC_WORKSPACE_WRAPPER", workspace::root()?.join("fuzz/rustc"));
     succeed(command)
@@ -149,12 +157,15 @@ impl Folders {
         let mut command = self.command(target, seconds)?;
         let output = interrupt::output(&mut command).with_context(|| format!("cannot start fuzz-{name}"))?;
         let said = String::from_utf8_lossy(&output.stderr);
+        // But for its lines on each way that was new.
+        let lines = said.lines().filter(|line| !line.starts_with('#'));
+        let said = lines.collect::<Vec<_>>().join("\n");
         if !output.status.success() {
             bail!(
                 "the target {name} has found an input that it fails on ({}):\n{}\nto see it again: {} FILE; once it is \
                  mended, keep the file in fuzz/corpus/{name}",
                 output.status,
-                said.trim_end(),
+                said,
                 self.programs.join(format!("fuzz-{name}")).display(),
             );
         }
