@@ -42,12 +42,13 @@ impl Shape for SolidSphere {
         let to_centre = self.0.centre_from::<P>(ray);
         let projection = P::Numbers::project(to_centre, ray.direction);
         let b = P::Numbers::length_of(projection);
-        let has_inside = self.0.has_inside::<F>() || standing.two_sided;
-        if b <= P::Numbers::NOTHING && !has_inside {
+        // Asked where it matters: kept from here on, it would cost each ball a register.
+        let has_inside = || self.0.has_inside::<F>() || standing.two_sided;
+        if b <= P::Numbers::NOTHING && !has_inside() {
             return None;
         }
         if standing.departs {
-            return if has_inside {
+            return if has_inside() {
                 chord::<P>(b, epsilon, t_max)
             } else {
                 None
@@ -55,17 +56,20 @@ impl Shape for SolidSphere {
         }
         let power = P::Numbers::square(self.0.square) - P::Numbers::dot(to_centre, to_centre);
         let discriminant = P::Numbers::squared(projection) + power;
+        if discriminant < P::Numbers::NO_SQUARE {
+            return None;
+        }
         let inside = power >= P::Numbers::NO_SQUARE;
         let hidden = if inside {
-            !has_inside
+            !has_inside()
         } else {
             b <= P::Numbers::NOTHING
         };
-        if hidden || discriminant < P::Numbers::NO_SQUARE {
+        if hidden {
             return None;
         }
         let root = P::Numbers::root(discriminant);
-        if has_inside && root <= P::Numbers::GRAZING {
+        if has_inside() && root <= P::Numbers::GRAZING {
             return None;
         }
         let t = if inside { b + root } else { b - root };
