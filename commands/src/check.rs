@@ -45,17 +45,8 @@ pub(crate) fn steps() -> anyhow::Result<()> {
 /// All but the whole system's, as a release build.
 fn unit_tests() -> anyhow::Result<()> {
     // What has no tests on the host, and what is tested apart.
-    let apart = [
-        "runtime",
-        "versatilepb",
-        "mps2-an385",
-        "fuzz",
-        "whole-system",
-        "commands",
-    ];
+    let apart = ["runtime", "versatilepb", "mps2-an385", "fuzz", "whole-system"];
     let mut all = cargo(&["test", "--quiet", "--release", "--workspace"])?;
     all.args(apart.iter().flat_map(|package| ["--exclude", package]));
-    shown(all)?;
-    // Alone, these are tested with the host's library that they were built with: the others' tests need another one.
-    shown(cargo(&["test", "--quiet", "--release", "--package", "commands"])?)
+    shown(all)
 }
