@@ -187,7 +187,14 @@ fn the_hosts_rooms_are_a_dozen_at_most_with_arrows_one_way() {
 
 #[test]
 fn the_firmwares_modules_have_arrows_one_way() {
-    for name in ["node", "operations", "runtime", "wire"] {
+    for name in [
+        "mps2-an385",
+        "node",
+        "operations",
+        "runtime",
+        "versatilepb",
+        "wire",
+    ] {
         let source = repository().join("firmware").join(name).join("src");
         let arrows = arrows_between(&source, "crate::");
         assert!(arrows.len() > 1, "{name} has {} modules", arrows.len());
