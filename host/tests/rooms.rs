@@ -200,6 +200,13 @@ fn the_firmwares_modules_have_arrows_one_way() {
         assert!(arrows.len() > 1, "{name} has {} modules", arrows.len());
         assert_one_way(&source, &arrows);
     }
+    // A profile names what every room needs of the number formats, and every room works by whichever profile.
+    let source = repository().join("firmware/tracer/src");
+    let mut arrows = arrows_between(&source, "crate::");
+    arrows.remove("profile");
+    arrows.values_mut().for_each(|used| _ = used.remove("profile"));
+    assert!(arrows.len() > 1, "the tracer has {} modules", arrows.len());
+    assert_one_way(&source, &arrows);
 }
 
 #[test]

@@ -3,10 +3,10 @@
 use bytemuck::{Pod, Zeroable};
 use fixedmath::{I2F30, I16F16, U19F45, division, product};
 
-use crate::arithmetic::{Mixed, Numbers, Published, Sampling};
+use crate::arithmetic::{Mixed, Published, Sampling};
+use crate::capability::{Capabilities, Capability};
 use crate::geometry::{PrimitiveId, PrimitiveSet, Ray};
 use crate::random::Random;
-use crate::scene::{Capabilities, Capability};
 
 /// A camera's record: a view of a scene at one size of the picture. Aligned to 8.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
@@ -64,7 +64,7 @@ pub trait FilmNumbers: Sampling {
 
 /// A pinhole camera whose rays start some way along their direction.
 #[derive(Clone, Copy, Debug)]
-pub struct Camera<N: Numbers> {
+pub struct Camera<N: FilmNumbers> {
     reciprocals: [U19F45; 2],
     subpixels: [u32; 2],
     position: [N::Length; 3],
@@ -74,7 +74,7 @@ pub struct Camera<N: Numbers> {
     up: [N::Unit; 3],
 }
 
-impl<N: Numbers> Camera<N> {
+impl<N: FilmNumbers> Camera<N> {
     /// The camera of a record.
     pub fn new(record: &CameraRecord) -> Self {
         Self {

@@ -8,12 +8,14 @@
 //! | room | what |
 //! | --- | --- |
 //! | [`arithmetic`] | number formats, and the operations on directions and samples |
+//! | [`capability`] | what an image must be capable of |
 //! | [`geometry`] | ray, hit, interaction; the shapes, each with its arithmetic and its record |
 //! | [`aggregate`] | finds the nearest of many primitives |
 //! | [`material`] | the table of materials; the BSDFs, each with its arithmetic and its parameters |
 //! | [`integrator`] | radiance along a camera ray |
 //! | [`camera`] | where that ray starts |
-//! | [`scene`] | a view of the bytes that the host's compiler writes; what an image must be capable of |
+//! | [`scene`] | a view of the bytes that the host's compiler writes, taken apart by [`blob`] |
+//! | [`plan`] | the picture's size and samples, and how it falls into units |
 //! | [`mod@unit`] | the work unit: a pure function of scene, camera, plan and unit id |
 //!
 //! A shape, a BSDF, an aggregate or an integrator is a file in its room and a line in that room's list.
@@ -24,10 +26,13 @@
 
 pub mod aggregate;
 pub mod arithmetic;
+pub mod blob;
 pub mod camera;
+pub mod capability;
 pub mod geometry;
 pub mod integrator;
 pub mod material;
+pub mod plan;
 pub mod profile;
 pub mod random;
 pub mod scene;

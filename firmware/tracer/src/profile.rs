@@ -2,9 +2,16 @@
 
 use fixedmath::I16F16;
 
-use crate::arithmetic::{Mixed, Numbers, Published};
-use crate::material::{HemisphereSampling, MalleyDisc, TangentSphere};
+use crate::arithmetic::{Mixed, Published, Sampling};
+use crate::camera::FilmNumbers;
+use crate::geometry::ShapeNumbers;
+use crate::material::{HemisphereSampling, MalleyDisc, MaterialNumbers, RadianceNumbers, TangentSphere};
 use crate::random::{FullState, LowBits, Random};
+
+/// Everything a tracer computes with.
+pub trait Numbers: Sampling + FilmNumbers + RadianceNumbers + ShapeNumbers + MaterialNumbers {}
+
+impl<N: Sampling + FilmNumbers + RadianceNumbers + ShapeNumbers + MaterialNumbers> Numbers for N {}
 
 /// A named set of arithmetic choices.
 pub trait Profile: Sized + 'static {

@@ -4,11 +4,11 @@ use core::marker::PhantomData;
 
 use super::Aggregate;
 use crate::arithmetic::Formats;
+use crate::capability::{Capability, Needs};
 use crate::geometry::{
     Bounds, Hit, Interaction, OnShape, PrimitiveId, PrimitiveSet, Primitives, Ray, Shape, Standing, Visitor,
 };
 use crate::profile::Profile;
-use crate::scene::{Capability, Needs};
 
 /// All primitives of a scene, tried one after the other.
 #[derive(Clone, Copy, Debug)]

@@ -5,9 +5,9 @@ mod linear;
 pub use linear::Linear;
 
 use crate::arithmetic::Formats;
+use crate::capability::Needs;
 use crate::geometry::{Bounds, Hit, Interaction, Ray};
 use crate::profile::Profile;
-use crate::scene::Needs;
 
 /// Primitives, and a way to find the nearest one that a ray meets.
 pub trait Aggregate {

@@ -1,10 +1,11 @@
 //! The number formats a tracer works in, and the operations it needs of them.
 //!
 //! Each trait stands beside what needs it: formats, directions and samples here, the film's in [`crate::camera`], light's in
-//! [`crate::material`], a shape's or a BSDF's in its own file. [`Numbers`] is all of them.
+//! [`crate::material`], a shape's or a BSDF's in its own file. [`Numbers`](crate::profile::Numbers) is all of them.
 
 mod mixed;
 mod published;
+pub mod vector;
 
 pub use mixed::Mixed;
 pub use published::Published;
@@ -13,15 +14,6 @@ use core::fmt::Debug;
 use core::ops::{Add, Neg, Sub};
 
 use fixedmath::{I2F30, I16F16, U0F32};
-
-use crate::camera::FilmNumbers;
-use crate::geometry::ShapeNumbers;
-use crate::material::{MaterialNumbers, RadianceNumbers};
-
-/// Everything a tracer computes with.
-pub trait Numbers: Sampling + FilmNumbers + RadianceNumbers + ShapeNumbers + MaterialNumbers {}
-
-impl<N: Sampling + FilmNumbers + RadianceNumbers + ShapeNumbers + MaterialNumbers> Numbers for N {}
 
 /// Formats of lengths and of directions' components.
 ///

@@ -2,8 +2,7 @@
 
 use fixedmath::{I2F30, I16F16, I48F16, U0F32, angle, division, product, root};
 
-use super::{Directions, Formats, Sampling};
-use crate::geometry::vector;
+use super::{Directions, Formats, Sampling, vector};
 
 /// 16:16 for every quantity but sums of squares, which stay in 48:16 until the root.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -8,18 +8,16 @@ mod bounds;
 mod primitives;
 mod ray;
 pub mod sphere;
-pub mod vector;
 
 pub use bounds::Bounds;
-pub use primitives::{OnShape, PrimitiveId, PrimitiveSet, Visitor};
+pub use primitives::{MAX_PRIMITIVES, OnShape, PrimitiveId, PrimitiveSet, Visitor};
 pub use ray::Ray;
 
-use bytemuck::Pod;
+use bytemuck::{Pod, Zeroable};
 
-use crate::arithmetic::Formats;
-use crate::material::MaterialId;
+use crate::arithmetic::{Formats, vector};
+use crate::capability::{Capability, Needs};
 use crate::profile::Profile;
-use crate::scene::{Capability, Needs};
 use sphere::{HollowSphere, SolidSphere, SphereNumbers};
 
 /// How a ray stands to a primitive that it may meet.
@@ -38,6 +36,24 @@ pub struct Hit<N: Formats> {
     pub t: N::Length,
     /// Whose surface.
     pub primitive: PrimitiveId,
+}
+
+/// A material's place in the scene's table: all that a shape knows of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+#[repr(transparent)]
+pub struct MaterialId(u16);
+
+impl MaterialId {
+    /// The material at `index`, from 0.
+    pub const fn new(index: u16) -> Self {
+        Self(index)
+    }
+
+    /// Its place, from 0.
+    #[inline]
+    pub const fn index(self) -> usize {
+        self.0 as usize
+    }
 }
 
 /// Where a ray meets a surface: made once a ray, of its nearest hit.

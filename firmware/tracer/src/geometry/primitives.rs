@@ -2,6 +2,9 @@
 
 use super::Shape;
 
+/// Primitives in a scene, at most: with a material of its own for each, that is what a core's data memory holds.
+pub const MAX_PRIMITIVES: usize = 256;
+
 /// The number of a primitive in its scene: kinds in their order, and each kind's in the order of its records.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PrimitiveId(u32);
@@ -29,7 +32,7 @@ impl PrimitiveId {
 pub struct PrimitiveSet([u32; PrimitiveSet::WORDS]);
 
 impl PrimitiveSet {
-    const WORDS: usize = crate::scene::MAX_PRIMITIVES.div_ceil(32);
+    const WORDS: usize = MAX_PRIMITIVES.div_ceil(32);
 
     /// No primitive.
     pub const EMPTY: Self = Self([0; Self::WORDS]);
@@ -95,9 +98,9 @@ macro_rules! shapes {
             pub(crate) fn take(
                 bytes: &mut &'s [u8],
                 [$($array),+]: [u16; KINDS],
-            ) -> Result<Self, $crate::scene::BlobError> {
+            ) -> Result<Self, $crate::blob::BlobError> {
                 Ok(Self {
-                    $($array: $crate::scene::take_records(bytes, $array)?,)+
+                    $($array: $crate::blob::take_records(bytes, $array)?,)+
                 })
             }
 

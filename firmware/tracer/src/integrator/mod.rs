@@ -4,20 +4,12 @@ mod path;
 
 pub use path::{Path, ROULETTE_FROM};
 
+use crate::capability::Capabilities;
 use crate::geometry::Ray;
 use crate::material::RadianceNumbers;
+use crate::plan::Plan;
 use crate::profile::Profile;
-use crate::scene::{Capabilities, Scene};
-use crate::unit::Plan;
-
-/// When a path ends.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Termination {
-    /// By Russian roulette, once it has bounced five times.
-    Roulette,
-    /// At this many surfaces.
-    Depth(u8),
-}
+use crate::scene::Scene;
 
 /// What one sample found.
 #[derive(Clone, Copy, Debug)]

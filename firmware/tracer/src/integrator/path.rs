@@ -2,15 +2,16 @@
 
 use core::marker::PhantomData;
 
-use super::{Integrator, Sample, Termination};
+use super::{Integrator, Sample};
 use crate::aggregate::Aggregate;
 use crate::arithmetic::{Formats, Sampling};
+use crate::capability::{Capabilities, Capability, Needs};
 use crate::geometry::Ray;
 use crate::material::{MaterialRecord, RadianceNumbers};
+use crate::plan::{Plan, Termination};
 use crate::profile::Profile;
 use crate::random::Random;
-use crate::scene::{Capabilities, Capability, Needs, Scene};
-use crate::unit::Plan;
+use crate::scene::Scene;
 
 /// Bounces before roulette may end a path.
 pub const ROULETTE_FROM: u32 = 5;

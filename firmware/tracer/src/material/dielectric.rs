@@ -6,12 +6,12 @@ use bytemuck::{Pod, Zeroable};
 use fixedmath::{I2F30, I4F28, I16F16, I36F28, product, root};
 
 use super::Bsdf;
+use crate::arithmetic::vector::{neg, reflected};
 use crate::arithmetic::{Formats, Mixed, Published, Sampling};
+use crate::capability::Capability;
 use crate::geometry::Interaction;
-use crate::geometry::vector::{neg, reflected};
 use crate::profile::Profile;
 use crate::random::Random;
-use crate::scene::Capability;
 
 /// A dielectric in air, such as glass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]

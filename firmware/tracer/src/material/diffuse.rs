@@ -4,12 +4,12 @@ use bytemuck::{Pod, Zeroable};
 use fixedmath::I2F30;
 
 use super::{Bsdf, Parameters};
+use crate::arithmetic::vector::cross;
 use crate::arithmetic::{Formats, Sampling};
+use crate::capability::Capability;
 use crate::geometry::Interaction;
-use crate::geometry::vector::cross;
 use crate::profile::Profile;
 use crate::random::Random;
-use crate::scene::Capability;
 
 /// Reflects alike in all directions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]

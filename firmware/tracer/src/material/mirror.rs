@@ -4,10 +4,10 @@ use bytemuck::{Pod, Zeroable};
 
 use super::{Bsdf, Parameters};
 use crate::arithmetic::Formats;
+use crate::arithmetic::vector::reflected;
+use crate::capability::Capability;
 use crate::geometry::Interaction;
-use crate::geometry::vector::reflected;
 use crate::profile::Profile;
-use crate::scene::Capability;
 
 /// Reflects in one direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]

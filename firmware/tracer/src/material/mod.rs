@@ -9,18 +9,19 @@ mod mirror;
 mod radiance;
 mod table;
 
+pub use crate::geometry::MaterialId;
 pub use dielectric::{Dielectric, DielectricNumbers};
 pub use diffuse::{Diffuse, HemisphereSampling, MalleyDisc, TangentSphere};
 pub use mirror::Mirror;
 pub use radiance::RadianceNumbers;
-pub use table::{MaterialId, MaterialRecord, Parameters};
+pub use table::{MaterialRecord, Parameters};
 
 use bytemuck::Pod;
 
 use crate::arithmetic::{Formats, Sampling};
+use crate::capability::Capability;
 use crate::geometry::Interaction;
 use crate::profile::Profile;
-use crate::scene::Capability;
 
 /// Bidirectional scattering distribution: how directions change. Its record is a material's [`Parameters`].
 pub trait Bsdf: Pod {

@@ -3,24 +3,6 @@
 use bytemuck::{Pod, Zeroable};
 use fixedmath::{I2F30, U0F32, U16F16};
 
-/// A material's place in the scene's table.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
-#[repr(transparent)]
-pub struct MaterialId(u16);
-
-impl MaterialId {
-    /// The material at `index`, from 0.
-    pub const fn new(index: u16) -> Self {
-        Self(index)
-    }
-
-    /// Its place, from 0.
-    #[inline]
-    pub const fn index(self) -> usize {
-        self.0 as usize
-    }
-}
-
 /// What a BSDF has in a record: three words, which its own type lends a meaning.
 pub type Parameters = [u32; 3];
 
@@ -94,7 +76,7 @@ macro_rules! bsdfs {
 
             /// Samples the BSDF; none where the image was built without it.
             #[inline]
-            pub fn sample<P: Profile, F: $crate::scene::Needs>(
+            pub fn sample<P: Profile, F: $crate::capability::Needs>(
                 &self,
                 direction: [<P::Numbers as Formats>::Unit; 3],
                 interaction: &Interaction<P::Numbers>,

@@ -3,7 +3,7 @@
 //! | bytes | header |
 //! | --- | --- |
 //! | 4 | magic "FXS2" |
-//! | 4 | what the scene needs: a bit for each [`Capability`](super::Capability) in its list's order |
+//! | 4 | what the scene needs: a bit for each [`Capability`](crate::capability::Capability) in its list's order |
 //! | 2 | materials |
 //! | 2 a kind | primitives of each kind of shape |
 //! | to a multiple of 8 | zero |
@@ -13,18 +13,17 @@
 
 use bytemuck::{Pod, Zeroable};
 
-use super::{Capabilities, Scene};
+use super::Scene;
 use crate::aggregate::Linear;
-use crate::geometry::{KINDS, PrimitiveSet, Primitives, Shape, Visitor};
+use crate::blob::{BlobError, take_records};
+use crate::capability::Capabilities;
+use crate::geometry::{KINDS, MAX_PRIMITIVES, PrimitiveSet, Primitives, Shape, Visitor};
 use crate::material::MaterialRecord;
 
 const _: () = assert!(
     cfg!(target_endian = "little"),
     "scenes are read in place, as little-endian words"
 );
-
-/// Primitives in a scene, at most: with a material of its own for each, that is what a core's data memory holds.
-pub const MAX_PRIMITIVES: usize = 256;
 
 /// The longest scene.
 pub const MAX_BYTES: usize =
@@ -37,25 +36,6 @@ const MAGIC: [u8; 4] = *b"FXS2";
 
 /// Kinds of shape, filled up to a multiple of 8 bytes with the three fields before.
 const COUNTS: usize = (KINDS + 1).next_multiple_of(4) - 1;
-
-/// Why a scene was refused.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum BlobError {
-    /// It is shorter than it says, or longer.
-    Length,
-    /// Its bytes do not begin at a multiple of 8.
-    Misaligned,
-    /// It does not begin as a scene.
-    BadMagic,
-    /// It has more primitives than there can be, or fields that mean nothing.
-    BadHeader,
-    /// A shape holds what no shape of its kind does, or a material that there is none of.
-    BadShape,
-    /// A material holds what none does.
-    BadMaterial,
-    /// It needs something that this image was built without.
-    NotInThisImage,
-}
 
 /// What comes before the records.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
@@ -81,14 +61,6 @@ impl Header {
             counts,
         }
     }
-}
-
-/// Takes `count` records from the front.
-pub(crate) fn take_records<'s, T: Pod>(bytes: &mut &'s [u8], count: u16) -> Result<&'s [T], BlobError> {
-    let len = usize::from(count) * size_of::<T>();
-    let (records, rest) = bytes.split_at_checked(len).ok_or(BlobError::Length)?;
-    *bytes = rest;
-    bytemuck::try_cast_slice(records).map_err(|_| BlobError::Misaligned)
 }
 
 impl<'s> Scene<'s> {

@@ -1,11 +1,11 @@
 //! The scene as a core has it: a view of the bytes that the host's compiler writes.
 
-mod capability;
 mod format;
 
-pub use capability::{All, Capabilities, Capability, Needs};
-pub(crate) use format::take_records;
-pub use format::{BlobError, Header, MAX_BYTES, MAX_PRIMITIVES};
+pub use crate::blob::BlobError;
+pub use crate::capability::{All, Capabilities, Capability, Needs};
+pub use crate::geometry::MAX_PRIMITIVES;
+pub use format::{Header, MAX_BYTES};
 
 use crate::aggregate::Linear;
 use crate::camera::CameraRecord;

@@ -4,10 +4,9 @@ use bytemuck::{Pod, Zeroable};
 
 use super::{Length, SphereNumbers, SphereRecord, chord};
 use crate::arithmetic::Formats;
-use crate::geometry::{Bounds, Hit, Interaction, Ray, Shape, Standing};
-use crate::material::MaterialId;
+use crate::capability::{Capability, Needs};
+use crate::geometry::{Bounds, Hit, Interaction, MaterialId, Ray, Shape, Standing};
 use crate::profile::{Profile, Quadratic};
-use crate::scene::{Capability, Needs};
 
 /// A sphere that everything outside of is solid: a wall or a room.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]

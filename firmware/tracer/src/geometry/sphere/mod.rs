@@ -14,12 +14,11 @@ pub use solid::SolidSphere;
 use bytemuck::{Pod, Zeroable};
 use fixedmath::{I1F31, I16F16, I32F32};
 
-use super::vector::{reflected, sub};
-use super::{Bounds, Hit, Interaction, Ray};
+use super::{Bounds, Hit, Interaction, MaterialId, Ray};
 use crate::arithmetic::Formats;
-use crate::material::MaterialId;
+use crate::arithmetic::vector::{reflected, sub};
+use crate::capability::{Capability, Needs};
 use crate::profile::{Profile, Quadratic};
-use crate::scene::{Capability, Needs};
 
 /// 1 / r as `mantissa` 2^(`shift` - 13): a point of the sphere shifted left by `shift` and multiplied has no more than 62 bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,7 +2,7 @@
 
 use core::ops::{Add, Neg, Sub};
 
-use crate::arithmetic::Directions;
+use super::Directions;
 
 /// `a + b`.
 #[inline]
