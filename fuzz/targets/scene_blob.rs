@@ -6,10 +6,10 @@ use host::scene::Blob;
 use libfuzzer_sys::fuzz_target;
 use tracer::aggregate::Aggregate;
 use tracer::camera::{Camera, CameraRecord};
-use tracer::integrator::{Integrator, Path, Termination};
+use tracer::integrator::{Integrator, Path};
 use tracer::profile::{Paper, Precise, Profile};
 use tracer::scene::{All, Capabilities, Scene};
-use tracer::unit::{Plan, SPAN, render};
+use tracer::unit::{Plan, SPAN, Termination, render};
 
 /// One unit. By roulette a path in a perfect mirror has no end.
 fn draw<P: Profile>(scene: &Scene<'_>, record: &CameraRecord) {
