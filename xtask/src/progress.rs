@@ -59,8 +59,8 @@ struct View {
     announced: bool,
     begun: Instant,
     last_line: Instant,
-    /// How many crates are done, of how many.
-    done: Option<(u32, u32)>,
+    /// Cargo's bar: how many crates are done, of how many, and which are being compiled.
+    bar: Option<Bar>,
 }
 
 impl View {
@@ -71,13 +71,13 @@ impl View {
             announced: false,
             begun: now,
             last_line: now,
-            done: None,
+            bar: None,
         }
     }
 
     /// What to write when cargo has said this.
     fn piece(&mut self, piece: &[u8], now: Instant) -> Vec<u8> {
-        let said = String::from_utf8_lossy(piece);
+        let said = plain(&String::from_utf8_lossy(piece));
         let says = |word: &str| said.contains(word);
         let mut text = Vec::new();
         let works = ["Compiling ", "Building ", "Downloading ", "Updating "];
@@ -93,8 +93,8 @@ impl View {
             }
             return text;
         }
-        if let Some(done) = count(&said) {
-            self.done = Some(done);
+        if let Some(bar) = Bar::read(&said) {
+            self.bar = Some(bar);
         } else if !["Compiling ", "Building ", "Downloaded ", "Finished "]
             .into_iter()
             .any(says)
@@ -109,21 +109,45 @@ impl View {
 
     /// The line that says how far it is, where there is no bar.
     fn count(&mut self, now: Instant) -> Vec<u8> {
-        let Some((done, all)) = self.done.filter(|_| !self.terminal) else {
+        let Some(Bar { done, all, now_at }) = self.bar.as_ref().filter(|_| !self.terminal) else {
             return Vec::new();
         };
         self.last_line = now;
         let seconds = now.duration_since(self.begun).as_secs();
-        format!("cargo xtask: {done} of {all} compiled, {seconds} s\n").into_bytes()
+        format!("cargo xtask: {done} of {all} compiled, {seconds} s, now at {now_at}\n").into_bytes()
     }
 }
 
-/// The numbers in cargo's bar: `    Building [====>    ] 12/240: exr, host`.
-fn count(bar: &str) -> Option<(u32, u32)> {
-    let (_, numbers) = bar.split_once("] ")?;
-    let (done, rest) = numbers.split_once('/')?;
-    let all = rest.split(|c: char| !c.is_ascii_digit()).next()?;
-    Some((done.parse().ok()?, all.parse().ok()?))
+/// Cargo's bar: `    Building [====>    ] 12/240: exr, host`.
+struct Bar {
+    done: u32,
+    all: u32,
+    now_at: String,
+}
+
+impl Bar {
+    fn read(said: &str) -> Option<Self> {
+        let (_, bar) = said.split_once("] ")?;
+        let (counts, now_at) = bar.split_once(": ")?;
+        let (done, all) = counts.split_once('/')?;
+        Some(Self {
+            done: done.parse().ok()?,
+            all: all.parse().ok()?,
+            now_at: now_at.trim().to_owned(),
+        })
+    }
+}
+
+/// A text without what colours it: escape sequences up to their letter.
+fn plain(text: &str) -> String {
+    let mut parts = text.split('\x1b');
+    let first = parts.next().unwrap_or_default().to_owned();
+    parts.fold(first, |plain, part| {
+        let end = part
+            .find(|c: char| c.is_ascii_alphabetic())
+            .map_or(part.len(), |at| at + 1);
+        plain + &part[end..]
+    })
 }
 
 #[cfg(test)]
@@ -150,8 +174,8 @@ mod tests {
     #[test]
     fn a_terminal_gets_the_bar_after_one_line() {
         let pieces = [
-            "   Compiling libc v0.2\n",
-            "    Building [==>  ] 1/240: libc\r",
+            "\x1b[1m\x1b[92m   Compiling\x1b[0m libc v0.2\n",
+            "\x1b[1m\x1b[96m    Building\x1b[0m [==>  ] 1/240: libc\r\x1b[K",
             "    Finished `release` profile\n",
         ];
         let text = shown(true, &pieces);
@@ -170,16 +194,16 @@ mod tests {
         let mut after =
             |seconds, piece: &str| view.piece(piece.as_bytes(), begun + Duration::from_secs(seconds));
         assert!(!after(0, "   Compiling libc v0.2\n").is_empty());
-        assert!(after(1, "    Building [==>  ] 1/240: libc\r").is_empty());
+        assert!(after(1, "\x1b[92m    Building\x1b[0m [==>  ] 1/240: libc\r").is_empty());
         assert_eq!(
             after(7, "    Building [==>  ] 30/240: exr, host(build)\r"),
-            b"cargo xtask: 30 of 240 compiled, 7 s\n"
+            b"cargo xtask: 30 of 240 compiled, 7 s, now at exr, host(build)\n"
         );
         assert!(after(8, "    Building [==>  ] 31/240: exr\r").is_empty());
         assert_eq!(after(9, "error: no such thing\n"), b"error: no such thing\n");
         assert_eq!(
             view.count(begun + Duration::from_secs(30)),
-            b"cargo xtask: 31 of 240 compiled, 30 s\n"
+            b"cargo xtask: 31 of 240 compiled, 30 s, now at exr\n"
         );
     }
 
