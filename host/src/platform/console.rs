@@ -6,8 +6,14 @@
 use std::fmt::Display;
 use std::io::{self, ErrorKind, Write};
 use std::process::ExitCode;
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::thread;
+use std::time::{Duration, Instant};
 
 use clap::Parser;
+
+/// How long nothing may be said.
+const SILENCE: Duration = Duration::from_secs(5);
 
 /// The exit code where the reader of the results has gone: that of a program which the system ends for it by SIGPIPE.
 pub const CLOSED_PIPE: u8 = 128 + 13;
@@ -46,6 +52,28 @@ pub fn note(text: impl Display) {
     let _nobody_watches = io::stderr().write_all(format!("{text}\n").as_bytes());
 }
 
+/// Does what may take its time; whoever watches is told now and then that it goes on, in the words of `what`.
+pub fn patiently<T>(what: &str, action: impl FnOnce() -> T) -> T {
+    let tell = |time: Duration| note(format!("{what}, for {} s so far", time.as_secs()));
+    with_ticks(SILENCE, tell, action)
+}
+
+/// Calls `tick` after each `interval` until `action` is done.
+fn with_ticks<T>(interval: Duration, tick: impl Fn(Duration) + Send, action: impl FnOnce() -> T) -> T {
+    let start = Instant::now();
+    let (doing, done) = mpsc::channel::<()>();
+    thread::scope(|scope| {
+        scope.spawn(move || {
+            while done.recv_timeout(interval) == Err(RecvTimeoutError::Timeout) {
+                tick(start.elapsed());
+            }
+        });
+        // Dropped at the end, also that of a panic.
+        let _doing = doing;
+        action()
+    })
+}
+
 /// The program's arguments. What else there may be to say about them (help, the version, a fault) is said, and the program
 /// then ends with the exit code.
 pub fn arguments<P: Parser>() -> Result<P, ExitCode> {
@@ -56,4 +84,27 @@ pub fn arguments<P: Parser>() -> Result<P, ExitCode> {
             _ => ExitCode::from(answer.exit_code() as u8),
         }
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::atomic::{AtomicU32, Ordering};
+
+    use super::*;
+
+    #[test]
+    fn what_takes_long_ticks_until_it_is_done() {
+        let (interval, ticks) = (Duration::from_millis(20), AtomicU32::new(0));
+        let count = |_| {
+            ticks.fetch_add(1, Ordering::Relaxed);
+        };
+        assert_eq!(with_ticks(Duration::from_secs(60), count, || 7), 7);
+        assert_eq!(ticks.load(Ordering::Relaxed), 0);
+        let long = || {
+            while ticks.load(Ordering::Relaxed) < 3 {
+                thread::yield_now();
+            }
+        };
+        with_ticks(interval, count, long);
+    }
 }

@@ -30,7 +30,7 @@ use crate::fleet::{Core, Fleet, FleetError, NativeFleet, QemuFleet};
 use crate::image::openexr::{self, ReadError};
 use crate::image::picture::Estimate;
 use crate::oracle::compare::CompareError;
-use crate::platform::console::note;
+use crate::platform::console::{note, patiently};
 use crate::platform::file::WriteError;
 use crate::platform::interrupt;
 use crate::platform::memory;
@@ -436,7 +436,9 @@ impl Job {
             self.scene.name,
             recipe.describe()
         ));
-        let mut image = firmware::build(toolchain, board, &recipe)?;
+        let mut image = patiently("building the image", || {
+            firmware::build(toolchain, board, &recipe)
+        })?;
         image.size = image.size.with_boot_block(boot_block_len(&self.compiled));
         note(&image.size);
         Ok(image)
