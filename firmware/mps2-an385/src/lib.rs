@@ -8,7 +8,7 @@
 //! | [`counter`]      | 25 MHz, for the clock                                 |
 //! | [`sleep`]        | wait-for-interrupt, with the system timer as alarm    |
 //! | [`lan9118`]      | the Ethernet controller                               |
-//! | [`semihosting`]  | the way out, with an exit code                        |
+//! | [`semihosting`]  | the exit, with its code                               |
 //! | [`exception`]    | the processor's exceptions                            |
 //! | `log`            | semihosting, with the feature `log`                   |
 //!

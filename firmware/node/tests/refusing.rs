@@ -1,4 +1,4 @@
-//! Jobs that a core refuses before it says a word, and the last words it has for that.
+//! Jobs that a core refuses before it says a word, and the fault that it reports.
 
 use bytemuck::Zeroable;
 use node::{Clock, Fault, Network, SendError, StackUse};

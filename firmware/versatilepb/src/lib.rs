@@ -8,7 +8,7 @@
 //! | [`counter`]      | 24 MHz, for the clock                              |
 //! | [`sleep`]        | wait-for-interrupt, with a timer as alarm          |
 //! | [`smc91c111`]    | the Ethernet controller                            |
-//! | [`semihosting`]  | the way out, with an exit code                     |
+//! | [`semihosting`]  | the exit, with its code                            |
 //! | [`exception`]    | the processor's exceptions                         |
 //! | `log`            | the second PL011, with the feature `log`           |
 //!

@@ -1,4 +1,4 @@
-//! The way out: a debugger's, here QEMU's, exit call.
+//! The end of the program, by a debugger's, here QEMU's, exit call.
 
 use runtime::ExitCode;
 

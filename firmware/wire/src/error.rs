@@ -17,7 +17,7 @@ pub enum DecodeError {
     Command(u16),
     /// A count or size is outside its range: no pixels, an odd number of samples, a lease of nothing.
     Range,
-    /// A text is not printable ASCII (names) or not UTF-8 (last words).
+    /// A text is not printable ASCII (names) or not UTF-8 (the reason of a FAULT).
     Text,
     /// A boot block does not start with its magic number: nothing was loaded at that address.
     Magic,
