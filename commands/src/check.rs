@@ -39,6 +39,11 @@ pub(crate) fn steps() -> anyhow::Result<()> {
         let words = ["clippy", "--release", "--all-targets", "--", "--deny", "warnings"];
         succeed(cargo(&words)?)
     })?;
+    step("documentation", || {
+        let mut command = cargo(&["doc", "--release", "--no-deps"])?;
+        command.env("RUSTDOCFLAGS", "--deny warnings");
+        succeed(command)
+    })?;
     step("unit tests", unit_tests)
 }
 

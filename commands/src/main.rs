@@ -34,7 +34,7 @@ enum Verb {
     Render(render::Arguments),
     /// Run everything that CI runs
     Test(test::Arguments),
-    /// Run what needs no emulator: format, licences, lints, unit tests
+    /// Run what needs no emulator: format, licences, lints, documentation, unit tests
     Check(check::Arguments),
     /// Fuzz everything that is read from outside, with libFuzzer
     ///
