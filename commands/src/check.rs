@@ -55,24 +55,3 @@ fn unit_tests() -> anyhow::Result<()> {
     all.args(apart.iter().flat_map(|package| ["--exclude", package]));
     shown(all)
 }
-
-#[cfg(test)]
-mod tests {
-    use std::fs;
-
-    use host::platform::workspace;
-
-    #[test]
-    fn the_oldest_compiler_is_the_same_wherever_it_is_named() {
-        let oldest = env!("CARGO_PKG_RUST_VERSION");
-        for (file, words) in [
-            ("README.md", format!("Rust {oldest} or newer")),
-            ("CONTRIBUTING.md", format!("is Rust {oldest},")),
-            (".github/workflows/ci.yml", format!("rust: [\"{oldest}\",")),
-        ] {
-            let path = workspace::file(file).expect("tests run in the checkout");
-            let text = fs::read_to_string(path).expect("a text");
-            assert!(text.contains(&words), "{file} does not say {words}");
-        }
-    }
-}
