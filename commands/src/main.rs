@@ -84,17 +84,6 @@ impl SetUp {
     }
 }
 
-/// The error and its causes, but not those that the text before has named already.
-fn message(error: &anyhow::Error) -> String {
-    let mut text = error.to_string();
-    for cause in error.chain().skip(1).map(ToString::to_string) {
-        if !text.contains(&cause) {
-            text = format!("{text}: {cause}");
-        }
-    }
-    text
-}
-
 fn main() -> ExitCode {
     match console::arguments() {
         Ok(verb) => run(verb).unwrap_or_else(|error| failed(&error)),
@@ -107,7 +96,7 @@ fn failed(error: &anyhow::Error) -> ExitCode {
     if let Some(error) = error.downcast_ref::<OutputError>() {
         return error.end();
     }
-    console::note(format!("error: {}", message(error)));
+    console::note(format!("error: {}", console::in_full(error.as_ref())));
     if interrupt::flag().load(Ordering::Relaxed) {
         ExitCode::from(interrupt::EXIT_CODE)
     } else {

@@ -1,5 +1,6 @@
 //! The collector alone, for cores that are started elsewhere: other QEMUs, other hosts, real boards.
 
+use std::error::Error;
 use std::net::{Ipv4Addr, UdpSocket};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -8,7 +9,7 @@ use clap::Parser;
 use host::collector::{self, CollectError};
 use host::firmware::board::Board;
 use host::fleet::session::{Route, Session};
-use host::platform::console::{self, note, say};
+use host::platform::console::{self, in_full, note, say};
 use host::platform::interrupt;
 use host::render::options::PictureOptions;
 use host::render::{Finished, Job, RenderError, boot_blocks};
@@ -43,23 +44,21 @@ fn main() -> ExitCode {
         Ok(arguments) => arguments,
         Err(code) => return code,
     };
-    match interrupt::watch().map_err(|error| error.to_string()) {
+    match interrupt::watch() {
         Err(error) => fail(&error, ExitCode::FAILURE),
         Ok(interrupted) => match run(&arguments, interrupted) {
             Ok(finished) => match say(finished.summary) {
                 Ok(()) => ExitCode::SUCCESS,
                 Err(error) => error.end(),
             },
-            Err(error @ RenderError::Interrupted(_)) => {
-                fail(&error.to_string(), ExitCode::from(interrupt::EXIT_CODE))
-            }
-            Err(error) => fail(&error.to_string(), ExitCode::FAILURE),
+            Err(error @ RenderError::Interrupted(_)) => fail(&error, ExitCode::from(interrupt::EXIT_CODE)),
+            Err(error) => fail(&error, ExitCode::FAILURE),
         },
     }
 }
 
-fn fail(error: &str, code: ExitCode) -> ExitCode {
-    note(format!("error: {error}"));
+fn fail(error: &dyn Error, code: ExitCode) -> ExitCode {
+    note(format!("error: {}", in_full(error)));
     code
 }
 

@@ -2,22 +2,28 @@
 //!
 //! A lease is a run of consecutive units that a core was told to render. The table is a state machine without a clock or
 //! a socket of its own: time is passed in, as the time since the collector started, and what must be sent comes out.
-//! A unit is in one of four states:
+//! A unit is in one of five states:
 //!
 //! ```text
-//!  fresh ──grant──> leased ──in──> done
-//!                   │    ^           ^
-//!              lost │    │ grant     │ in after all
-//!                   v    │           │
-//!                  returned ─────────┘
+//!  fresh ──grant──> leased ──────────in──────> done
+//!                  │  ^  │                      ^
+//!                  │  │  └─missing──> overtaken │ in after all
+//!        late, ended  │ grant             │     │
+//!                  v  │                   v     │
+//!                 returned <──60 ms later─┴─────┘
 //! ```
 //!
-//! A core works through its leases in the order in which it got them, and through a lease from its first unit to its
-//! last. So whatever comes from it says that all that should have come before is either in or lost, and what is lost goes
-//! back at once. A core that says it has nothing to do has lost all that it was told a while ago. What remains is a
-//! core that says nothing: after some [patience](Leases::late), its leases are on offer, and whoever has nothing to do takes them.
-//! It may have been at work all the time; once it is heard again, what nobody has taken is its own again. Where one of
-//! these conclusions is wrong (packets overtake each other) a unit is rendered twice, to the same bytes, and counted once.
+//! A core works through its leases in the order in which they reach it, and through a lease from its first unit to its last, and
+//! it numbers what it sends. So the numbers that a packet of it skips say how many units before are either lost or overtaken on the
+//! way: what is not in a moment later is leased again.
+//!
+//! Where no number is missing, a lease that a core passes over, or has while it says that it has nothing to do, may not have reached
+//! it, or not yet been read. It is sent again, under the same number: a core takes none twice, so that can do no harm. Told in vain a
+//! few times, it gives the lease back.
+//!
+//! What remains is a core that says nothing: after some [patience](Leases::late), its leases are on offer, and whoever has nothing
+//! to do takes them. It may have been at work all the time; once it is heard again, what nobody has taken is its own again.
+//! Where one of these conclusions is wrong, a unit is rendered twice, to the same bytes, and counted once.
 
 use std::collections::{BTreeMap, BTreeSet, HashSet, VecDeque};
 use std::ops::Range;
@@ -31,8 +37,16 @@ const LEASES_PER_CORE: usize = 3;
 const LEASE_TIME: Duration = Duration::from_millis(60);
 /// The most units in one lease.
 const MAX_UNITS: u32 = 256;
-/// What an idle core was told longer ago than this never reached it.
+/// A lease that was sent longer ago than this may never have reached its core. It is sent again, and then after twice the time before.
 const SETTLED: Duration = Duration::from_millis(100);
+/// Times that a lease is sent again.
+const TRIES: u32 = 5;
+/// How much later than its successors a packet may come.
+const OVERTAKEN: Duration = Duration::from_millis(60);
+/// The same where packets get lost, and a unit that does not come is most likely one of them.
+const OVERTAKEN_OR_LOST: Duration = Duration::from_millis(20);
+/// A network that has lost a packet is taken for one that loses packets for this long.
+const LOSSY: Duration = Duration::from_secs(5);
 /// The least time without a word after which a core's leases are on offer.
 const LEAST_PATIENCE: Duration = Duration::from_secs(2);
 /// The same in units of the core's usual time for one unit.
@@ -63,11 +77,26 @@ pub enum Arrival {
 /// A granted lease, as far as it has been worked off.
 #[derive(Clone, Copy, Debug)]
 struct Lease {
+    /// As the core was told.
+    grant: Grant,
     /// The next unit expected of it.
     next: u32,
     /// The first unit past it.
     end: u32,
-    granted: Duration,
+    /// When it was sent last.
+    sent: Duration,
+    /// Times that it was sent again.
+    again: u32,
+    /// The core is at a later one.
+    passed: bool,
+}
+
+/// Units that a core has sent, by what came after them, and that have not come.
+#[derive(Clone, Debug)]
+struct Missing {
+    units: Range<u32>,
+    /// Whether the core has sent them for certain.
+    certain: bool,
 }
 
 /// What the table knows of one core.
@@ -80,9 +109,56 @@ struct Holder {
     heard: Duration,
     /// For how long it had said nothing when its leases were put on offer; it gets others once it says something.
     silent: Option<Duration>,
+    /// It has nothing to do, by its own word.
+    idle: bool,
 }
 
 impl Holder {
+    /// The core was at `unit`, and if it was there last, it has sent `skipped` packets before it that have not come. Returns what is
+    /// missing.
+    fn advance(&mut self, unit: u32, skipped: Option<u64>) -> Vec<Missing> {
+        let is_its = |lease: &Lease| (lease.next..lease.end).contains(&unit);
+        let Some(index) = self.leases.iter().position(is_its) else {
+            return Vec::new();
+        };
+        let lease = &mut self.leases[index];
+        let units = lease.next..unit;
+        lease.next = unit + 1;
+        let certain = skipped.is_some();
+        let of_leases_before = skipped.map(|skipped| skipped.saturating_sub(units.len() as u64));
+        let mut missing = match of_leases_before {
+            Some(skipped) => self.finish(index, skipped),
+            None => self.finish(0, 0),
+        };
+        missing.push(Missing { units, certain });
+        missing
+    }
+
+    /// The core is past the first few leases, and has sent `skipped` packets for them that have not come. Returns what is missing: a
+    /// lease of which something came was worked off to its end; one of which nothing came may have been where as many packets are
+    /// missing as it has units, and is else still to be worked at.
+    fn finish(&mut self, leases: usize, skipped: u64) -> Vec<Missing> {
+        let is_begun = |lease: &Lease| lease.next > lease.grant.first;
+        let (mut left, mut missing) = (skipped, Vec::new());
+        for certain in [true, false] {
+            let first = self.leases.range_mut(..leases);
+            for lease in first.filter(|lease| is_begun(lease) == certain) {
+                let count = u64::from(lease.end - lease.next);
+                if certain {
+                    left = left.saturating_sub(count);
+                } else if count > left {
+                    lease.passed = true;
+                    continue;
+                }
+                let units = lease.next..lease.end;
+                missing.push(Missing { units, certain });
+                lease.next = lease.end;
+            }
+        }
+        self.leases.retain(|lease| lease.next < lease.end);
+        missing
+    }
+
     /// It was at work all the time: what nobody has taken meanwhile is its own again.
     fn reclaim(&mut self, returned: &mut BTreeSet<u32>) {
         for lease in std::mem::take(&mut self.leases) {
@@ -93,7 +169,7 @@ impl Holder {
                     _ => self.leases.push_back(Lease {
                         next: unit,
                         end: unit + 1,
-                        granted: lease.granted,
+                        ..lease
                     }),
                 }
             }
@@ -109,6 +185,10 @@ pub struct Leases {
     fresh: u32,
     /// Units that were leased, are not in, and are on offer now.
     returned: BTreeSet<u32>,
+    /// What may have been overtaken by other packets, and until when it may still come.
+    overtaken: Vec<(Duration, Missing)>,
+    /// Until when the network is taken for one that loses packets.
+    lossy: Duration,
     done: HashSet<u32>,
     holders: BTreeMap<u16, Holder>,
     /// Cores that are known to have ended.
@@ -125,6 +205,8 @@ impl Leases {
             units,
             fresh: 0,
             returned: BTreeSet::new(),
+            overtaken: Vec::new(),
+            lossy: Duration::ZERO,
             done: HashSet::new(),
             holders: BTreeMap::new(),
             dead: BTreeSet::new(),
@@ -138,24 +220,30 @@ impl Leases {
         self.done.len() == self.units as usize
     }
 
-    /// The core says that it has nothing to do, and did not say so before `said`: its word may have waited in the socket.
-    pub fn idle(&mut self, core: u16, said: Duration, now: Duration) {
+    /// Units that are in.
+    pub fn done(&self) -> usize {
+        self.done.len()
+    }
+
+    /// Whether this one is.
+    pub fn is_done(&self, unit: u32) -> bool {
+        self.done.contains(&unit)
+    }
+
+    /// The core says that it has nothing to do, and that it has sent `skipped` packets which have not come.
+    pub fn idle(&mut self, core: u16, skipped: u64, now: Duration) {
         let Some(holder) = self.holder(core, now) else {
             return;
         };
         holder.pace.pause();
-        // Granted in order, so the settled ones are at the front.
-        let is_settled = |lease: &Lease| said.saturating_sub(lease.granted) >= SETTLED;
-        let settled = holder.leases.iter().take_while(|lease| is_settled(lease)).count();
-        let lost: Vec<Lease> = holder.leases.drain(..settled).collect();
-        for lease in lost {
-            self.take_back(lease.next..lease.end);
-        }
+        holder.idle = true;
+        let missing = holder.finish(holder.leases.len(), skipped);
+        self.overtake(missing, now);
     }
 
-    /// Unit `unit` came in from `core`.
-    pub fn arrived(&mut self, core: u16, unit: u32, now: Duration) -> Arrival {
-        let mut passed = Vec::new();
+    /// Unit `unit` came in from `core`, which has sent `skipped` packets before it that have not come; nothing, where it is not the
+    /// last that the core has sent of those that have come.
+    pub fn arrived(&mut self, core: u16, unit: u32, skipped: Option<u64>, now: Duration) -> Arrival {
         if let Some(holder) = self.holders.get(&core) {
             let took = now.saturating_sub(holder.heard);
             // A core that was stopped, not slow, shall not make everybody patient for as long as that.
@@ -163,21 +251,13 @@ impl Leases {
                 .longest
                 .max(holder.silent.map_or(took, |waited| took.min(waited)));
         }
+        // Where packets get lost, a lease that was passed over is one of them, or all that came of it is.
+        let skipped = skipped.map(|skipped| if now < self.lossy { u64::MAX } else { skipped });
+        let mut missing = Vec::new();
         if let Some(holder) = self.holder(core, now) {
             holder.pace.unit_done(now);
-            let of = holder
-                .leases
-                .iter()
-                .position(|lease| (lease.next..lease.end).contains(&unit));
-            if let Some(index) = of {
-                passed.extend(holder.leases.drain(..index).map(|lease| lease.next..lease.end));
-                let lease = &mut holder.leases[0];
-                passed.push(lease.next..unit);
-                lease.next = unit + 1;
-                if lease.next == lease.end {
-                    holder.leases.pop_front();
-                }
-            }
+            holder.idle = false;
+            missing = holder.advance(unit, skipped);
         }
         let arrival = if self.done.insert(unit) {
             Arrival::First
@@ -185,10 +265,60 @@ impl Leases {
             Arrival::Duplicate
         };
         self.returned.remove(&unit);
-        for range in passed {
-            self.take_back(range);
-        }
+        self.overtake(missing, now);
         arrival
+    }
+
+    /// This has a moment to come after all.
+    fn overtake(&mut self, missing: Vec<Missing>, now: Duration) {
+        let wait = if now < self.lossy {
+            OVERTAKEN_OR_LOST
+        } else {
+            OVERTAKEN
+        };
+        let missing = missing.into_iter().filter(|missing| !missing.units.is_empty());
+        self.overtaken
+            .extend(missing.map(|missing| (now + wait, missing)));
+    }
+
+    /// The leases that `core` should be sent again. It did not say its last word before `said`: that may have waited in the socket.
+    pub fn again(&mut self, core: u16, said: Duration, now: Duration) -> Vec<Grant> {
+        let (mut again, mut in_vain) = (Vec::new(), Vec::new());
+        let tries = if now < self.lossy { 0 } else { TRIES };
+        let Some(holder) = self.holders.get_mut(&core) else {
+            return again;
+        };
+        holder.leases.retain_mut(|lease| {
+            let open = holder.idle || lease.passed;
+            if !open || said.saturating_sub(lease.sent) < SETTLED * 2_u32.pow(lease.again) {
+                return true;
+            }
+            if lease.again >= tries {
+                in_vain.push(lease.next..lease.end);
+                return false;
+            }
+            again.push(lease.grant);
+            (lease.again, lease.sent) = (lease.again + 1, now);
+            true
+        });
+        for units in in_vain {
+            self.take_back(units);
+        }
+        again
+    }
+
+    /// Puts on offer what should have come by now.
+    pub fn settle(&mut self, now: Duration) {
+        let due: Vec<_> = self
+            .overtaken
+            .extract_if(.., |(until, _)| *until <= now)
+            .collect();
+        for (_, Missing { units, certain }) in due {
+            if certain && units.clone().any(|unit| !self.done.contains(&unit)) {
+                self.lossy = now + LOSSY;
+            }
+            self.take_back(units);
+        }
     }
 
     /// The core has ended: its leases go elsewhere, and it gets no more, whatever of it still arrives.
@@ -261,14 +391,18 @@ impl Leases {
         if holder.leases.is_empty() {
             holder.heard = now;
         }
-        holder.leases.push_back(Lease {
-            next: first,
-            end: first + count,
-            granted: now,
-        });
         let number = self.next_number;
         self.next_number = number.wrapping_add(1);
-        Some(Grant { number, first, count })
+        let grant = Grant { number, first, count };
+        holder.leases.push_back(Lease {
+            grant,
+            next: first,
+            end: first + count,
+            sent: now,
+            again: 0,
+            passed: false,
+        });
+        Some(grant)
     }
 
     /// The cores that have been heard of and have not ended, in order.
@@ -286,6 +420,7 @@ impl Leases {
             pace: Pace::default(),
             heard: now,
             silent: None,
+            idle: false,
         };
         let holder = self.holders.entry(core).or_insert_with(new);
         holder.heard = now;

@@ -6,11 +6,15 @@
 //!   socket <── LEASE <─────────────────────┘        fleet: who has ended?
 //! ```
 //!
-//! Everything happens in the caller's thread: one packet is taken, judged and answered before the next. What decides
-//! is in parts that know neither socket nor clock: [`leases`], [`intake`], [`sequence`], [`silence`]. Their time is the one in which
-//! somebody looked at the socket ([`attended`]).
+//! Everything happens in the caller's thread: one packet is taken, judged and answered before the next. What decides is the
+//! [engine], which knows neither socket nor clock nor fleet, and its parts: [`leases`], [`intake`], [`sequence`], [`silence`]. Time is
+//! that in which somebody looked at the socket ([`attended`]). Whoever wants to watch gets [events](Event): the [progress](Progress)
+//! that people see is one that does, in a thread of its own.
 
 pub mod attended;
+pub mod cores;
+pub mod engine;
+pub mod events;
 pub mod intake;
 pub mod leases;
 pub mod pace;
@@ -20,81 +24,31 @@ pub mod sequence;
 pub mod silence;
 mod socket;
 
-use std::net::SocketAddr;
+use std::io;
 use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
-use wire::{Farewell, Name};
 
-use crate::fleet::Fleet;
-use crate::image::film::Film;
-use sequence::Sequence;
+use crate::image::film::{Film, FilmError};
 
+pub use cores::{Cause, CoreRecord};
+pub use events::Event;
 pub use progress::Progress;
-pub use run::{CollectError, collect};
+pub use run::collect;
 pub use socket::{BindError, bind};
 
-/// What the collector knows of one core.
-#[derive(Clone, Debug, Default)]
-pub struct CoreRecord {
-    /// The core's number.
-    pub core: u16,
-    /// Where its last packet came from. That may change within a run; a core is known by what its packets say.
-    pub source: Option<SocketAddr>,
-    /// When its last packet came, in time [attended](attended::Attended).
-    pub heard: Option<Duration>,
-    /// Units of it that counted.
-    pub units: u64,
-    /// 24 MHz ticks it spent on them.
-    pub ticks: u64,
-    /// Rays it traced for them.
-    pub rays: u64,
-    /// Its packet numbers.
-    pub sequence: Sequence,
-    /// Its board, as it says itself.
-    pub board: Option<Name>,
-    /// What it said when it was told to stop.
-    pub farewell: Option<Farewell>,
-    /// What it said when it failed, in the life it has or had last.
-    pub last_words: Option<String>,
-    /// How it ended for good before it was told to, by its own or the fleet's word.
-    pub ended: Option<String>,
-    /// Why it was started again, each time.
-    pub restarts: Vec<String>,
-}
-
-impl CoreRecord {
-    /// The last thing that went wrong with it.
-    pub fn fault(&self) -> Option<&str> {
-        let latest = self.last_words.as_ref().or(self.ended.as_ref());
-        latest.or(self.restarts.last()).map(String::as_str)
-    }
-
-    /// What is known about its end, `now`.
-    fn describe(&self, fleet: &Fleet, now: Duration) -> String {
-        let heard = match self.heard {
-            Some(heard) => format!("last heard {:.1} s ago", now.saturating_sub(heard).as_secs_f64()),
-            None => "never heard".to_owned(),
-        };
-        let mut text = format!("\n  core {}: {}, {heard}", self.core, fleet.how_ended(self.core));
-        if !self.restarts.is_empty() {
-            text.push_str(&format!(", started again {} times", self.restarts.len()));
-        }
-        if let Some(words) = &self.last_words {
-            text.push_str(&format!("\n    its last words: {words}"));
-        }
-        for line in fleet.last_output(self.core) {
-            text.push_str(&format!("\n    {line}"));
-        }
-        text
-    }
-
-    /// It has a new life, because its last one ended with `why`: it numbers its packets anew, and nobody knows yet where it is.
-    fn start_again(&mut self, why: String) {
-        self.restarts.push(why);
-        self.sequence.start_again();
-        (self.last_words, self.source) = (None, None);
-    }
+/// Why a collection could not go on.
+#[derive(Debug, thiserror::Error)]
+pub enum CollectError {
+    /// The socket failed.
+    #[error("the collector's socket failed")]
+    Socket(#[from] io::Error),
+    /// A unit could not be added.
+    #[error(transparent)]
+    Film(#[from] FilmError),
+    /// The picture is cut into more units than there are numbers for.
+    #[error("the picture has more than 2^32 units; choose a smaller --size or --spp")]
+    TooManyUnits,
 }
 
 /// How a collection ended.
@@ -109,7 +63,7 @@ pub enum End {
 }
 
 /// Packet counts.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Packets {
     /// Pixel packets that arrived.
     pub received: u64,
@@ -119,6 +73,8 @@ pub struct Packets {
     pub rejected: u64,
     /// Gaps in the cores' running numbers.
     pub lost: u64,
+    /// The share of what arrived that was duplicate: work done twice, or packets that the network doubled.
+    pub duplicate_share: f64,
 }
 
 /// What was collected; complete or not, as `end` says.
@@ -162,5 +118,7 @@ impl Collection {
 
 #[cfg(test)]
 mod faulty_network;
+#[cfg(test)]
+mod leases_simulation;
 #[cfg(test)]
 mod tests;

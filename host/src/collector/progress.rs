@@ -1,29 +1,17 @@
 //! How far it is: a bar on a terminal, a line every few seconds elsewhere.
 
 use std::io::IsTerminal;
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
 use indicatif::{HumanCount, HumanDuration, ProgressBar, ProgressStyle};
 
+use super::events::{Event, State};
 use crate::platform::console::note;
 
 /// Time between two lines where there is no terminal.
 const LINE_EVERY: Duration = Duration::from_secs(5);
-
-/// How far a collection is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct State {
-    /// Time since the start.
-    pub elapsed: Duration,
-    /// Units in.
-    pub units: u64,
-    /// Samples in.
-    pub samples: u64,
-    /// Samples wanted.
-    pub wanted: u64,
-    /// Pixel packets received.
-    pub packets: u64,
-}
 
 impl State {
     /// Samples/s, packets/s and the time left, once there is something to go by.
@@ -36,7 +24,7 @@ impl State {
         let left = Duration::from_secs_f64(self.wanted.saturating_sub(self.samples) as f64 / rate);
         format!(
             "{} units, {} samples/s, {:.0} packets/s, {} left",
-            HumanCount(self.units),
+            HumanCount(self.units as u64),
             HumanCount(rate as u64),
             self.packets as f64 / seconds,
             HumanDuration(left),
@@ -44,20 +32,46 @@ impl State {
     }
 }
 
-/// Says how far it is.
+/// Says how far a collection is and what happens to its cores, in a thread of its own: it may take its time over a terminal, and over
+/// the place in an image where a core failed.
 #[derive(Debug)]
-pub enum Progress {
+pub struct Progress {
+    events: Sender<Event>,
+    thread: JoinHandle<()>,
+}
+
+impl Progress {
+    /// A bar on standard error if that is a terminal, else lines.
+    pub fn on_stderr() -> Self {
+        let (events, received) = channel();
+        let thread = thread::spawn(move || Display::on_stderr().follow(&received));
+        Self { events, thread }
+    }
+
+    /// Shows this, soon.
+    pub fn see(&self, event: Event) {
+        // It has ended only if it panicked, which the user has seen.
+        let _gone = self.events.send(event);
+    }
+
+    /// Shows what is left to be shown, and takes the bar away.
+    pub fn finish(self) {
+        drop(self.events);
+        let _panicked = self.thread.join();
+    }
+}
+
+/// What people see.
+#[derive(Debug)]
+enum Display {
     /// A bar, redrawn in place.
     Bar(ProgressBar),
     /// Lines; holds the time of the last one.
     Lines(Duration),
-    /// Nothing at all.
-    Silent,
 }
 
-impl Progress {
-    /// A bar if there is a terminal to draw it on, else lines.
-    pub fn on_stderr() -> Self {
+impl Display {
+    fn on_stderr() -> Self {
         if !std::io::stderr().is_terminal() {
             return Self::Lines(Duration::ZERO);
         }
@@ -66,8 +80,19 @@ impl Progress {
         Self::Bar(ProgressBar::new(0).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar())))
     }
 
-    /// Shows the state.
-    pub fn show(&mut self, state: &State) {
+    fn follow(mut self, events: &Receiver<Event>) {
+        for event in events {
+            match event {
+                Event::State(state) => self.show(&state),
+                other => self.say(&described(&other)),
+            }
+        }
+        if let Self::Bar(bar) = self {
+            bar.finish_and_clear();
+        }
+    }
+
+    fn show(&mut self, state: &State) {
         match self {
             Self::Bar(bar) => {
                 bar.set_length(state.wanted);
@@ -79,24 +104,39 @@ impl Progress {
                 let percent = 100 * state.samples.min(state.wanted) / state.wanted.max(1);
                 note(format!("{percent:3} % {}", state.describe()));
             }
-            Self::Lines(_) | Self::Silent => {}
+            Self::Lines(_) => {}
         }
     }
 
-    /// Says something besides.
-    pub fn say(&self, text: &str) {
+    fn say(&self, text: &str) {
         match self {
             Self::Bar(bar) => bar.println(text),
             Self::Lines(_) => note(text),
-            Self::Silent => {}
         }
     }
+}
 
-    /// Takes the bar away.
-    pub fn finish(&self) {
-        if let Self::Bar(bar) = self {
-            bar.finish_and_clear();
-        }
+/// An event in words.
+fn described(event: &Event) -> String {
+    match event {
+        Event::State(state) => state.describe(),
+        Event::Restarted {
+            core,
+            time,
+            most,
+            cause,
+        } => format!(
+            "core {core} is started again ({time} of {most}): {}",
+            cause.explained()
+        ),
+        Event::Retired { core, cause } => format!("core {core} is gone: {}", cause.explained()),
+        Event::Late { core } => format!("core {core} is silent; its work goes to the others"),
+        Event::Silence { lasts } => format!(
+            "no core has said anything for {:.0} s; they may be at work, and are waited for. Ctrl-C ends this and keeps what \
+             there is of the picture; --patience SECONDS would say how long to wait",
+            lasts.as_secs_f64()
+        ),
+        Event::Logged(line) => line.clone(),
     }
 }
 
@@ -124,5 +164,12 @@ mod tests {
             state.describe(),
             "10 units, 5,000 samples/s, 6 packets/s, 4 seconds left"
         );
+    }
+
+    #[test]
+    fn a_long_silence_comes_with_what_the_user_can_do() {
+        let lasts = Duration::from_secs(20);
+        let said = described(&Event::Silence { lasts });
+        assert!(said.contains("for 20 s") && said.contains("--patience"), "{said}");
     }
 }

@@ -12,29 +12,34 @@ pub struct Sequence {
 }
 
 impl Sequence {
-    /// Packet number `seq` came.
-    pub fn received(&mut self, seq: u16) {
+    /// Packet number `seq` came. Returns how many numbers before it were skipped, as far as that was not known; nothing where
+    /// later packets have overtaken it.
+    pub fn received(&mut self, seq: u16) -> Option<u64> {
         if is_behind(seq, self.next) {
             // Overtaken by others after all, or doubled on the way: then it is not missing.
             if self.missing.remove(&seq) {
                 self.lost -= 1;
             }
-        } else {
-            self.sent_before(seq);
-            self.step();
+            return None;
         }
+        let skipped = self.sent_before(seq);
+        self.step();
+        skipped
     }
 
-    /// The core says that it had sent packets up to, not including, number `seq`.
-    pub fn sent_before(&mut self, seq: u16) {
+    /// The core says that it had sent packets up to, not including, number `seq`. Returns how many of them were not known to be
+    /// missing; nothing where it has sent more since, and its word is old.
+    pub fn sent_before(&mut self, seq: u16) -> Option<u64> {
         if is_behind(seq, self.next) {
-            return;
+            return None;
         }
+        let before = self.lost;
         while self.next != seq {
             self.missing.insert(self.next);
             self.lost += 1;
             self.step();
         }
+        Some(self.lost - before)
     }
 
     /// The core was started again: its next packet is number 0, and what is missing now never comes.
@@ -66,7 +71,9 @@ mod tests {
 
     fn lost_after(numbers: impl IntoIterator<Item = u16>) -> u64 {
         let mut sequence = Sequence::default();
-        numbers.into_iter().for_each(|number| sequence.received(number));
+        numbers.into_iter().for_each(|number| {
+            sequence.received(number);
+        });
         sequence.lost()
     }
 
@@ -82,24 +89,29 @@ mod tests {
     fn the_loss_of_the_last_packet_shows_in_the_next_word() {
         let mut sequence = Sequence::default();
         sequence.received(0);
-        sequence.sent_before(2);
-        sequence.sent_before(1);
+        assert_eq!(sequence.sent_before(2), Some(1));
+        assert_eq!(sequence.sent_before(2), Some(0), "it is known");
+        assert_eq!(sequence.sent_before(1), None);
         assert_eq!(sequence.lost(), 1);
     }
 
     #[test]
     fn a_core_that_is_started_again_has_lost_what_was_missing_and_no_more() {
         let mut sequence = Sequence::default();
-        [0, 1, 3, 4]
-            .into_iter()
-            .for_each(|number| sequence.received(number));
+        [0, 1, 3, 4].into_iter().for_each(|number| {
+            sequence.received(number);
+        });
         sequence.start_again();
         // The last one is the 2 of the new life, not the missing one of the old.
-        [0, 1, 2].into_iter().for_each(|number| sequence.received(number));
+        [0, 1, 2].into_iter().for_each(|number| {
+            sequence.received(number);
+        });
         assert_eq!(sequence.lost(), 1);
         // Nor is it thought of as an old packet when the old life was long.
         let mut sequence = Sequence::default();
-        (0..40_000).for_each(|number| sequence.received(number));
+        (0..40_000).for_each(|number| {
+            sequence.received(number);
+        });
         sequence.start_again();
         sequence.received(1);
         assert_eq!(sequence.lost(), 1);

@@ -6,7 +6,7 @@
 
 use std::time::Duration;
 
-use crate::fleet::Fleet;
+use crate::fleet::Patience;
 
 /// The least silence after which cores elsewhere are given up.
 const LEAST: Duration = Duration::from_secs(60);
@@ -42,84 +42,73 @@ impl Silence {
     }
 
     /// How long a silence of all cores has to last for the fleet to be given up, if any is long enough.
-    pub fn limit(&self, fleet: &Fleet) -> Option<Duration> {
-        match fleet {
-            // It stands still for as long as somebody looks at it.
-            Fleet::Debugged(_) => None,
-            Fleet::Qemu(_) | Fleet::Native(_) => self.patience,
+    pub fn limit(&self, fleets: Patience) -> Option<Duration> {
+        match fleets {
+            Patience::Endless => None,
+            Patience::WhileTheyLive => self.patience,
             // Before its first unit a core may take any time: somebody starts it by hand.
-            Fleet::Elsewhere => {
+            Patience::InUnits => {
                 let of_units = self.longest_unit.map(|unit| LEAST.max(unit * IN_UNITS));
                 self.patience.or(of_units)
             }
         }
     }
 
-    /// What the user should hear of a silence that began at `began`, once.
-    pub fn announce(&mut self, fleet: &Fleet, began: Duration, now: Duration) -> Option<String> {
-        let watched = matches!(fleet, Fleet::Debugged(_));
+    /// How long the silence that began at `began` has lasted, once, where the user should hear of it.
+    pub fn worth_a_word(&mut self, fleets: Patience, began: Duration, now: Duration) -> Option<Duration> {
         let long = WORTH_A_WORD.max(self.longest_unit.unwrap_or_default() * WORTH_A_WORD_IN_UNITS);
         let lasts = now.saturating_sub(began);
-        if watched || lasts < long || self.announced == Some(began) {
+        if fleets == Patience::Endless || lasts < long || self.announced == Some(began) {
             return None;
         }
         self.announced = Some(began);
-        Some(format!(
-            "no core has said anything for {:.0} s; they may be at work, and are waited for. Ctrl-C ends this and keeps what \
-             there is of the picture; --patience SECONDS would say how long to wait",
-            lasts.as_secs_f64()
-        ))
+        Some(lasts)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::firmware::arithmetic::Arithmetic;
-    use crate::fleet::NativeFleet;
 
     const SECOND: Duration = Duration::from_secs(1);
 
     #[test]
     fn nothing_ends_the_wait_for_cores_that_are_seen_to_live_but_the_user() {
-        let fleet = Fleet::Native(NativeFleet::start(&[], Arithmetic::Precise).expect("no threads"));
+        let fleet = Patience::WhileTheyLive;
         let mut silence = Silence::new(None);
         silence.unit_after(SECOND / 100);
-        assert_eq!(silence.limit(&fleet), None);
-        assert_eq!(Silence::new(Some(SECOND)).limit(&fleet), Some(SECOND));
+        assert_eq!(silence.limit(fleet), None);
+        assert_eq!(Silence::new(Some(SECOND)).limit(fleet), Some(SECOND));
     }
 
     #[test]
     fn cores_elsewhere_have_a_minute_or_twenty_units() {
         let mut silence = Silence::new(None);
-        assert_eq!(silence.limit(&Fleet::Elsewhere), None, "they are being started");
+        assert_eq!(silence.limit(Patience::InUnits), None, "they are being started");
         silence.unit_after(SECOND / 10);
-        assert_eq!(silence.limit(&Fleet::Elsewhere), Some(60 * SECOND));
+        assert_eq!(silence.limit(Patience::InUnits), Some(60 * SECOND));
         silence.unit_after(5 * SECOND);
         silence.unit_after(SECOND);
-        assert_eq!(silence.limit(&Fleet::Elsewhere), Some(100 * SECOND));
+        assert_eq!(silence.limit(Patience::InUnits), Some(100 * SECOND));
         silence.patience = Some(3 * SECOND);
-        assert_eq!(silence.limit(&Fleet::Elsewhere), Some(3 * SECOND));
+        assert_eq!(silence.limit(Patience::InUnits), Some(3 * SECOND));
     }
 
     #[test]
     fn a_long_silence_is_told_once() {
         let mut silence = Silence::new(None);
-        assert_eq!(silence.announce(&Fleet::Elsewhere, SECOND, 20 * SECOND), None);
-        let said = silence
-            .announce(&Fleet::Elsewhere, SECOND, 21 * SECOND)
-            .expect("it is long enough");
-        assert!(said.contains("for 20 s") && said.contains("--patience"), "{said}");
-        assert_eq!(silence.announce(&Fleet::Elsewhere, SECOND, 90 * SECOND), None);
+        let told = |silence: &mut Silence, began: u32, now: u32| {
+            silence.worth_a_word(Patience::InUnits, began * SECOND, now * SECOND)
+        };
+        assert_eq!(told(&mut silence, 1, 20), None);
+        assert_eq!(told(&mut silence, 1, 21), Some(20 * SECOND));
+        assert_eq!(told(&mut silence, 1, 90), None);
         silence.unit_after(10 * SECOND);
+        assert_eq!(told(&mut silence, 100, 129), None);
+        assert_eq!(told(&mut silence, 100, 130), Some(30 * SECOND));
         assert_eq!(
-            silence.announce(&Fleet::Elsewhere, 100 * SECOND, 129 * SECOND),
+            silence.worth_a_word(Patience::Endless, SECOND, 900 * SECOND),
             None
-        );
-        assert!(
-            silence
-                .announce(&Fleet::Elsewhere, 100 * SECOND, 130 * SECOND)
-                .is_some()
         );
     }
 }

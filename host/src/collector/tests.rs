@@ -19,7 +19,8 @@ use super::silence::Silence;
 use super::*;
 use crate::fleet::session::tests::small;
 use crate::fleet::session::{Route, Session};
-use crate::fleet::{self, NativeFleet, QemuFleet};
+use crate::fleet::{self, Elsewhere, Fleet, NativeFleet, QemuFleet};
+use crate::image::film::Film;
 
 struct HostClock(Instant);
 
@@ -121,14 +122,7 @@ fn collected(
     let port = socket.local_addr().expect("it is bound").port();
     let cores = Cores::start(session, port, faults);
     let start = Instant::now();
-    let collection = collect(
-        session,
-        &socket,
-        &mut Fleet::Elsewhere,
-        PATIENCE,
-        interrupted,
-        &mut Progress::Silent,
-    );
+    let collection = collect(session, &socket, &mut Elsewhere, PATIENCE, interrupted, &mut drop);
     let took = start.elapsed();
     (collection.expect("the socket works"), cores.join(), took)
 }
@@ -262,7 +256,7 @@ fn time_in_which_the_collector_stood_still_is_no_silence() {
         work(&of_core, 0, port, Faults::default(), Arc::default())
     });
     let clock = || start.elapsed() + Duration::from_secs(3600) * (looks.fetch_add(1, Ordering::Relaxed) / 10);
-    let collection = collected_by(&clock, &session, &socket, &mut Fleet::Elsewhere);
+    let collection = collected_by(&clock, &session, &socket, &mut Elsewhere);
     assert_eq!(collection.end, End::Complete);
     assert_eq!(collection.film, whole_film(&session));
     assert!(core.join().expect("no panic").is_ok());
@@ -273,11 +267,10 @@ fn collected_by(
     clock: &dyn Fn() -> Duration,
     session: &Session,
     socket: &UdpSocket,
-    fleet: &mut Fleet,
+    fleet: &mut dyn Fleet,
 ) -> Collection {
-    let silence = Silence::new(PATIENCE.filter(|_| matches!(fleet, Fleet::Elsewhere)));
-    let progress = &mut Progress::Silent;
-    let collection = run::collect_by(clock, session, socket, fleet, silence, &RUNNING, progress);
+    let silence = Silence::new(PATIENCE.filter(|_| !fleet.policy().sees_ends));
+    let collection = run::collect_by(clock, session, socket, fleet, silence, &RUNNING, &mut drop);
     collection.expect("the socket works")
 }
 
@@ -286,17 +279,10 @@ fn cores_that_failed_to_start_end_it_at_once_with_their_reason() {
     let session = small(2, PixelOrder::Leased);
     let socket = bind(Ipv4Addr::LOCALHOST, 0).expect("a free port");
     let damaged = vec![vec![0; 100]; 2];
-    let fleet =
+    let mut fleet =
         NativeFleet::start(&damaged, crate::firmware::arithmetic::Arithmetic::Precise).expect("threads");
     let start = Instant::now();
-    let end = collect(
-        &session,
-        &socket,
-        &mut Fleet::Native(fleet),
-        None,
-        &RUNNING,
-        &mut Progress::Silent,
-    );
+    let end = collect(&session, &socket, &mut fleet, None, &RUNNING, &mut drop);
     assert!(start.elapsed() < Duration::from_secs(2));
     let End::Deserted(why) = end.expect("the socket works").end else {
         panic!("no core ever worked")
@@ -309,15 +295,15 @@ fn cores_that_failed_to_start_end_it_at_once_with_their_reason() {
 }
 
 /// What the collector makes of a fleet that it waits for.
-fn waited_for(session: &Session, socket: &UdpSocket, fleet: &mut Fleet) -> Collection {
-    let collection = collect(session, socket, fleet, None, &RUNNING, &mut Progress::Silent);
+fn waited_for(session: &Session, socket: &UdpSocket, fleet: &mut dyn Fleet) -> Collection {
+    let collection = collect(session, socket, fleet, None, &RUNNING, &mut drop);
     collection.expect("the socket works")
 }
 
 /// A fleet whose QEMU is a script, which finds its own folder in `$0`.
-fn scripted(folder: &std::path::Path, script: &str) -> Fleet {
+fn scripted(folder: &std::path::Path, script: &str) -> QemuFleet {
     let qemu = fleet::fake_qemu(folder, script);
-    Fleet::Qemu(QemuFleet::start(&qemu, &fleet::cores([0]), folder).expect("it starts"))
+    QemuFleet::start(&qemu, &fleet::cores([0]), folder).expect("it starts")
 }
 
 #[test]
@@ -333,7 +319,8 @@ fn a_core_that_fails_every_time_is_given_up_soon() {
     for words in ["all cores have ended", "code 4", "started again 3 times", "oh no"] {
         assert!(why.contains(words), "{words} in: {why}");
     }
-    assert_eq!(collection.cores[0].restarts, ["its QEMU ended with code 4"; 3]);
+    let ended = Cause::Ended("its QEMU ended with code 4".to_owned());
+    assert_eq!(collection.cores[0].restarts, vec![ended; 3]);
     // Four short lives, and no wait for anything else.
     assert!(
         collection.elapsed < Duration::from_secs(5),
@@ -363,11 +350,9 @@ fn a_core_that_is_started_again_works_on() {
     assert_eq!(collection.film, whole_film(&session));
     assert_eq!(collection.packets.lost, 0);
     let record = &collection.cores[0];
-    assert_eq!(record.restarts, ["its QEMU ended with code 3"]);
-    assert_eq!(
-        (record.fault(), &record.ended),
-        (Some("its QEMU ended with code 3"), &None)
-    );
+    let ended = Cause::Ended("its QEMU ended with code 3".to_owned());
+    assert_eq!(record.restarts, vec![ended.clone()]);
+    assert_eq!((record.trouble(), &record.ended), (Some(ended), &None));
     assert!(core.join().expect("no panic").is_ok());
 }
 
@@ -382,17 +367,10 @@ fn packets_of_another_run_are_named_when_nothing_else_comes() {
     let port = socket.local_addr().expect("it is bound").port();
     let foreign = Cores::start(&other, port, &[Faults::default()]);
     // Its own core exists but never says a word that counts, so that the silence is its own.
-    let damaged =
+    let mut damaged =
         NativeFleet::start(&[vec![]], crate::firmware::arithmetic::Arithmetic::Precise).expect("a thread");
     thread::sleep(Duration::from_millis(100));
-    let end = collect(
-        &session,
-        &socket,
-        &mut Fleet::Native(damaged),
-        None,
-        &RUNNING,
-        &mut Progress::Silent,
-    );
+    let end = collect(&session, &socket, &mut damaged, None, &RUNNING, &mut drop);
     foreign.join();
     let End::Deserted(why) = end.expect("the socket works").end else {
         panic!("no core ever worked")

@@ -2,12 +2,14 @@
 
 pub mod capture;
 mod core;
+mod elsewhere;
 mod log;
 mod native;
 mod qemu;
 pub mod session;
 
 pub use self::core::{Core, capture_of};
+pub use elsewhere::Elsewhere;
 pub use native::NativeFleet;
 pub(crate) use qemu::bound_to_this_process;
 #[cfg(test)]
@@ -17,8 +19,11 @@ pub use qemu::{QemuFleet, run_to_end, run_with_peer};
 use std::io;
 use std::path::Path;
 
-/// Times a core is started again at most.
+/// Times an emulated core is started again at most.
 pub const RESTARTS: usize = 3;
+
+/// What is said of a core that has not ended.
+const RUNNING: &str = "still running";
 
 /// Lines of a core's output that are kept for a report of its end.
 const LAST_LINES: usize = 5;
@@ -56,91 +61,69 @@ fn unusable(path: &Path) -> impl FnOnce(io::Error) -> FleetError {
 }
 
 /// The cores of a run. Dropping it ends them.
-#[derive(Debug)]
-pub enum Fleet {
-    /// One QEMU process a core.
-    Qemu(QemuFleet),
-    /// The same under a debugger, which may make it stand still for any time.
-    Debugged(QemuFleet),
-    /// One thread of this host a core.
-    Native(NativeFleet),
-    /// Somebody else starts and ends them.
-    Elsewhere,
-}
+///
+/// Another kind of fleet is another file here, and a line where [`crate::render`] chooses one.
+pub trait Fleet {
+    /// What may be concluded from its cores' ends and silences.
+    fn policy(&self) -> Policy;
 
-impl Fleet {
     /// Cores that ended since the last call.
-    pub fn newly_ended(&mut self) -> Vec<u16> {
-        match self {
-            Self::Qemu(fleet) | Self::Debugged(fleet) => fleet.newly_ended(),
-            Self::Native(fleet) => fleet.newly_ended(),
-            Self::Elsewhere => Vec::new(),
-        }
+    fn newly_ended(&mut self) -> Vec<u16> {
+        Vec::new()
     }
 
-    /// What is known about the end of a core, in words.
-    pub fn how_ended(&self, core: u16) -> String {
-        let known = match self {
-            Self::Qemu(fleet) | Self::Debugged(fleet) => fleet.how_ended(core),
-            Self::Native(fleet) => fleet.how_ended(core),
-            Self::Elsewhere => return "started elsewhere".to_owned(),
-        };
-        known.unwrap_or_else(|| "still running".to_owned())
-    }
+    /// What is known about a core's life or its end, in words.
+    fn how_ended(&self, core: u16) -> String;
 
     /// Starts a core that has ended again, where that may help, and says whether it did.
-    ///
-    /// A thread of this host is not started again, as it runs the very program that looks after it; nor is a core under a debugger,
-    /// whose end somebody looks at.
-    pub fn start_again(&mut self, core: u16) -> Result<bool, FleetError> {
-        match self {
-            Self::Qemu(fleet) => fleet.start_again(core),
-            Self::Debugged(_) | Self::Native(_) | Self::Elsewhere => Ok(false),
-        }
+    fn start_again(&mut self, _core: u16) -> Result<bool, FleetError> {
+        Ok(false)
     }
 
-    /// Whether a core that fails tells it to the fleet too, by its end.
-    pub fn sees_ends(&self) -> bool {
-        !matches!(self, Self::Elsewhere)
-    }
-
-    /// The image that a core runs.
-    pub fn image(&self, core: u16) -> Option<&Path> {
-        match self {
-            Self::Qemu(fleet) | Self::Debugged(fleet) => fleet.image(core),
-            Self::Native(_) | Self::Elsewhere => None,
-        }
+    /// The image that a core runs, where it is a file.
+    fn image(&self, _core: u16) -> Option<&Path> {
+        None
     }
 
     /// The last lines that a core wrote on its console.
-    pub fn last_output(&self, core: u16) -> Vec<String> {
-        match self {
-            Self::Qemu(fleet) | Self::Debugged(fleet) => fleet.last_output(core),
-            Self::Native(_) | Self::Elsewhere => Vec::new(),
-        }
+    fn last_output(&self, _core: u16) -> Vec<String> {
+        Vec::new()
     }
 
     /// Warnings and errors that the cores have logged since the last call. With all else they go to the fleet's log, too.
-    pub fn warnings(&mut self) -> Vec<String> {
-        match self {
-            Self::Qemu(fleet) | Self::Debugged(fleet) => fleet.warnings(),
-            Self::Native(_) | Self::Elsewhere => Vec::new(),
-        }
+    fn warnings(&mut self) -> Vec<String> {
+        Vec::new()
     }
 
     /// Ends the cores, and returns their last warnings.
-    pub fn end(self) -> Vec<String> {
-        match self {
-            Self::Qemu(fleet) | Self::Debugged(fleet) => fleet.end(),
-            Self::Native(_) | Self::Elsewhere => Vec::new(),
-        }
+    fn end(&mut self) -> Vec<String> {
+        Vec::new()
     }
 
     /// The sum of the peak memory of the cores' own processes, in bytes.
-    pub fn peak_memory(&self) -> u64 {
-        match self {
-            Self::Qemu(fleet) | Self::Debugged(fleet) => fleet.peak_memory(),
-            Self::Native(_) | Self::Elsewhere => 0,
-        }
+    fn peak_memory(&self) -> u64 {
+        0
     }
+}
+
+/// What a collector may conclude from the ends and silences of a fleet's cores.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Policy {
+    /// Times that a core which fails is started again at most.
+    pub restarts: usize,
+    /// Whether the fleet sees a core end, so that a core's own word of it need not be taken for the end.
+    pub sees_ends: bool,
+    /// How long all cores may be silent.
+    pub patience: Patience,
+}
+
+/// How long all cores of a fleet may be silent before it is given up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Patience {
+    /// For ever: somebody looks at them, and they stand still meanwhile.
+    Endless,
+    /// For as long as they live; the user may want it to be shorter.
+    WhileTheyLive,
+    /// For long in comparison to what their units took, because nobody sees whether they live; the user may want it otherwise.
+    InUnits,
 }

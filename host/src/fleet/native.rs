@@ -15,7 +15,7 @@ use tracer::profile::{Paper, Precise, Profile};
 use tracer::scene::All;
 use wire::{Boot, Command, MAX_PAYLOAD, Name, ToCore};
 
-use super::FleetError;
+use super::{Fleet, FleetError, Patience, Policy, RUNNING};
 use crate::firmware::arithmetic::Arithmetic;
 use crate::platform::wait;
 use crate::scene::Blob;
@@ -75,8 +75,19 @@ impl NativeFleet {
         }
         Ok(fleet)
     }
+}
 
-    pub(super) fn newly_ended(&mut self) -> Vec<u16> {
+impl Fleet for NativeFleet {
+    /// A thread is not started again: it runs the very program that looks after it.
+    fn policy(&self) -> Policy {
+        Policy {
+            restarts: 0,
+            sees_ends: true,
+            patience: Patience::WhileTheyLive,
+        }
+    }
+
+    fn newly_ended(&mut self) -> Vec<u16> {
         let mut ended = Vec::new();
         for (number, core) in self.cores.iter_mut().enumerate() {
             if matches!(core, Core::Running(thread) if thread.is_finished())
@@ -89,10 +100,10 @@ impl NativeFleet {
         ended
     }
 
-    pub(super) fn how_ended(&self, core: u16) -> Option<String> {
-        match self.cores.get(usize::from(core))? {
-            Core::Running(_) => None,
-            Core::Ended(how) => Some(how.clone()),
+    fn how_ended(&self, core: u16) -> String {
+        match self.cores.get(usize::from(core)) {
+            Some(Core::Ended(how)) => how.clone(),
+            Some(Core::Running(_)) | None => RUNNING.to_owned(),
         }
     }
 }

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use super::core::Core;
 use super::log::FleetLog;
-use super::{FleetError, LAST_LINES, RESTARTS, unusable};
+use super::{Fleet, FleetError, LAST_LINES, Patience, Policy, RESTARTS, RUNNING, unusable};
 use crate::firmware::board::Board;
 use crate::platform::interrupt;
 use crate::platform::memory;
@@ -85,6 +85,8 @@ pub struct QemuFleet {
     guests: Vec<Guest>,
     measured: Instant,
     log: Option<FleetLog>,
+    /// Somebody looks at its cores, which may stand still for any time, and at their ends.
+    debugged: bool,
 }
 
 impl QemuFleet {
@@ -96,6 +98,7 @@ impl QemuFleet {
             guests: Vec::with_capacity(cores.len()),
             measured: Instant::now(),
             log: None,
+            debugged: false,
         };
         fs::create_dir_all(folder).map_err(unusable(folder))?;
         if cores.iter().any(|core| core.logs) {
@@ -124,29 +127,10 @@ impl QemuFleet {
         Ok(fleet)
     }
 
-    /// Starts a core that has ended again, if its end leaves hope that the next life is longer.
-    ///
-    /// A core that has failed may have met with a rare accident, and is started with the same image and boot block, a few times:
-    /// its log goes on, and its process has a new id. Not so one that was killed, because somebody wanted that, nor one that gave
-    /// up by itself, for want of a network card or of a boot block that it understands: it would do so again.
-    pub(super) fn start_again(&mut self, core: u16) -> Result<bool, FleetError> {
-        let Some(guest) = self.guests.iter_mut().find(|guest| guest.core.number == core) else {
-            return Ok(false);
-        };
-        let failed = |status: ExitStatus| status.code().is_some_and(|code| FAILED.contains(&code));
-        if guest.restarts == RESTARTS || !guest.ended.is_some_and(failed) {
-            return Ok(false);
-        }
-        guest.child = launch(&self.qemu, &guest.core, &guest.files, guest.restarts + 1)?;
-        guest.ended = None;
-        guest.restarts += 1;
-        guest.note_process()?;
-        Ok(true)
-    }
-
-    /// A core's image.
-    pub(super) fn image(&self, core: u16) -> Option<&Path> {
-        Some(&self.guest(core)?.core.elf)
+    /// The same, whose cores somebody looks at with a debugger: they may stand still for any time, and are not started again.
+    pub fn debugged(mut self) -> Self {
+        self.debugged = true;
+        self
     }
 
     fn guest(&self, core: u16) -> Option<&Guest> {
@@ -158,23 +142,9 @@ impl QemuFleet {
         self.log.as_ref().map(FleetLog::path)
     }
 
-    pub(super) fn warnings(&mut self) -> Vec<String> {
-        self.log.as_mut().map(FleetLog::look).unwrap_or_default()
-    }
-
-    pub(super) fn end(mut self) -> Vec<String> {
-        self.kill();
-        self.log.as_mut().map(FleetLog::end).unwrap_or_default()
-    }
-
     /// The ids of the processes, core by core.
     pub fn process_ids(&self) -> Vec<u32> {
         self.guests.iter().map(|guest| guest.child.id()).collect()
-    }
-
-    /// The sum of the processes' peak memory in bytes, as last seen.
-    pub(super) fn peak_memory(&self) -> u64 {
-        self.guests.iter().map(|guest| guest.peak_memory).sum()
     }
 
     fn measure(&mut self) {
@@ -188,7 +158,31 @@ impl QemuFleet {
         }
     }
 
-    pub(super) fn newly_ended(&mut self) -> Vec<u16> {
+    fn kill(&mut self) {
+        for guest in &mut self.guests {
+            // The only error is that it has ended already.
+            let _gone = guest.child.kill();
+        }
+        for guest in &mut self.guests {
+            let _status = guest.child.wait();
+        }
+    }
+}
+
+impl Fleet for QemuFleet {
+    fn policy(&self) -> Policy {
+        Policy {
+            restarts: if self.debugged { 0 } else { RESTARTS },
+            sees_ends: true,
+            patience: if self.debugged {
+                Patience::Endless
+            } else {
+                Patience::WhileTheyLive
+            },
+        }
+    }
+
+    fn newly_ended(&mut self) -> Vec<u16> {
         self.measure();
         let mut ended = Vec::new();
         for guest in &mut self.guests {
@@ -203,26 +197,44 @@ impl QemuFleet {
         ended
     }
 
-    fn kill(&mut self) {
-        for guest in &mut self.guests {
-            // The only error is that it has ended already.
-            let _gone = guest.child.kill();
-        }
-        for guest in &mut self.guests {
-            let _status = guest.child.wait();
-        }
-    }
-
-    pub(super) fn how_ended(&self, core: u16) -> Option<String> {
-        let status = self.guest(core)?.ended?;
-        Some(match (status.code(), status.signal()) {
+    fn how_ended(&self, core: u16) -> String {
+        let Some(status) = self.guest(core).and_then(|guest| guest.ended) else {
+            return RUNNING.to_owned();
+        };
+        match (status.code(), status.signal()) {
             (Some(code), _) => format!("its QEMU ended with code {code}"),
             (None, Some(signal)) => format!("its QEMU was killed by signal {signal}"),
             (None, None) => format!("its QEMU ended ({status})"),
-        })
+        }
     }
 
-    pub(super) fn last_output(&self, core: u16) -> Vec<String> {
+    /// Starts a core that has ended again, if its end leaves hope that the next life is longer.
+    ///
+    /// A core that has failed may have met with a rare accident, and is started with the same image and boot block, a few times:
+    /// its log goes on, and its process has a new id. Not so one that was killed, because somebody wanted that, nor one that gave
+    /// up by itself, for want of a network card or of a boot block that it understands: it would do so again.
+    fn start_again(&mut self, core: u16) -> Result<bool, FleetError> {
+        let restarts = self.policy().restarts;
+        let Some(guest) = self.guests.iter_mut().find(|guest| guest.core.number == core) else {
+            return Ok(false);
+        };
+        let failed = |status: ExitStatus| status.code().is_some_and(|code| FAILED.contains(&code));
+        if guest.restarts == restarts || !guest.ended.is_some_and(failed) {
+            return Ok(false);
+        }
+        guest.child = launch(&self.qemu, &guest.core, &guest.files, guest.restarts + 1)?;
+        guest.ended = None;
+        guest.restarts += 1;
+        guest.note_process()?;
+        Ok(true)
+    }
+
+    /// A core's image.
+    fn image(&self, core: u16) -> Option<&Path> {
+        Some(&self.guest(core)?.core.elf)
+    }
+
+    fn last_output(&self, core: u16) -> Vec<String> {
         let Some(guest) = self.guest(core) else {
             return Vec::new();
         };
@@ -234,6 +246,20 @@ impl QemuFleet {
                 log.display()
             )],
         }
+    }
+
+    fn warnings(&mut self) -> Vec<String> {
+        self.log.as_mut().map(FleetLog::look).unwrap_or_default()
+    }
+
+    fn end(&mut self) -> Vec<String> {
+        self.kill();
+        self.log.as_mut().map(FleetLog::end).unwrap_or_default()
+    }
+
+    /// The sum of the processes' peak memory in bytes, as last seen.
+    fn peak_memory(&self) -> u64 {
+        self.guests.iter().map(|guest| guest.peak_memory).sum()
     }
 }
 

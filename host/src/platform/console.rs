@@ -3,8 +3,10 @@
 //! The macros for that panic where the reader has gone or the disk is full. Here a result that cannot be written is an error
 //! like any other, and a note that cannot be written is dropped: nobody is left to be told.
 
+use std::error::Error;
 use std::fmt::Display;
 use std::io::{self, ErrorKind, Write};
+use std::iter;
 use std::process::ExitCode;
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::thread;
@@ -20,7 +22,7 @@ pub const CLOSED_PIPE: u8 = 128 + 13;
 
 /// Results that could not be written to standard output.
 #[derive(Debug, thiserror::Error)]
-#[error("cannot write to standard output: {0}")]
+#[error("cannot write to standard output")]
 pub struct OutputError(#[from] io::Error);
 
 impl OutputError {
@@ -29,7 +31,7 @@ impl OutputError {
         if self.0.kind() == ErrorKind::BrokenPipe {
             return ExitCode::from(CLOSED_PIPE);
         }
-        note(format!("error: {self}"));
+        note(format!("error: {}", in_full(self)));
         ExitCode::FAILURE
     }
 }
@@ -44,6 +46,12 @@ pub fn put(bytes: &[u8]) -> Result<(), OutputError> {
     let mut output = io::stdout().lock();
     output.write_all(bytes)?;
     Ok(output.flush()?)
+}
+
+/// An error with what caused it, each in its own words.
+pub fn in_full(error: &dyn Error) -> String {
+    let causes = iter::successors(error.source(), |&cause| cause.source());
+    causes.fold(error.to_string(), |text, cause| format!("{text}: {cause}"))
 }
 
 /// Tells whoever watches.

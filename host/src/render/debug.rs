@@ -15,11 +15,11 @@ use std::thread;
 use super::folder::clear_cores;
 use super::options::PictureOptions;
 use super::{Job, RenderError};
-use crate::collector::{self, CollectError, Progress};
+use crate::collector::{self, CollectError};
 use crate::firmware::board::Board;
 use crate::firmware::{self, FirmwareError, Image};
 use crate::fleet::session::{Route, Session};
-use crate::fleet::{Core, Fleet, QemuFleet, bound_to_this_process};
+use crate::fleet::{Core, QemuFleet, bound_to_this_process};
 use crate::platform::console::note;
 use crate::platform::setup::{self, Install, SetupError, Wanted};
 
@@ -83,7 +83,7 @@ pub fn debug(options: &DebugOptions) -> Result<ExitStatus, RenderError> {
         path: folder.clone(),
         cause,
     })?;
-    let fleet = QemuFleet::start(qemu, &[core], &folder)?;
+    let fleet = QemuFleet::start(qemu, &[core], &folder)?.debugged();
     let console = folder.join(format!("core-{number}.log"));
     note(format!("the core's console: {}", console.display()));
     attend(&session, &socket, fleet, debugger)
@@ -93,13 +93,13 @@ pub fn debug(options: &DebugOptions) -> Result<ExitStatus, RenderError> {
 fn attend(
     session: &Session,
     socket: &UdpSocket,
-    core: QemuFleet,
+    mut fleet: QemuFleet,
     mut debugger: Command,
 ) -> Result<ExitStatus, RenderError> {
-    let (mut fleet, ended) = (Fleet::Debugged(core), AtomicBool::new(false));
+    let ended = AtomicBool::new(false);
     thread::scope(|scope| {
-        let collection = scope
-            .spawn(|| collector::collect(session, socket, &mut fleet, None, &ended, &mut Progress::Silent));
+        let collection =
+            scope.spawn(|| collector::collect(session, socket, &mut fleet, None, &ended, &mut drop));
         let status = debugger.status();
         ended.store(true, Ordering::Relaxed);
         match collection.join() {

@@ -26,7 +26,7 @@ use crate::firmware::board::Board;
 use crate::firmware::{self, FirmwareError, Image, Recipe};
 use crate::fleet::capture::CaptureError;
 use crate::fleet::session::{Route, Session, boot_block_len};
-use crate::fleet::{Core, Fleet, FleetError, NativeFleet, QemuFleet};
+use crate::fleet::{Core, Elsewhere, Fleet, FleetError, NativeFleet, QemuFleet};
 use crate::image::openexr::{self, ReadError};
 use crate::image::picture::Estimate;
 use crate::oracle::compare::CompareError;
@@ -265,7 +265,7 @@ impl Job {
         self.collect(
             session,
             socket,
-            Fleet::Elsewhere,
+            Box::new(Elsewhere),
             origin,
             Instant::now(),
             interrupted,
@@ -276,16 +276,26 @@ impl Job {
         &self,
         session: &Session,
         socket: &UdpSocket,
-        mut fleet: Fleet,
+        mut fleet: Box<dyn Fleet>,
         origin: Origin,
         start: Instant,
         interrupted: &AtomicBool,
     ) -> Result<Finished, RenderError> {
-        let mut progress = Progress::on_stderr();
+        let progress = Progress::on_stderr();
         let before = start.elapsed();
         let patience = self.options.patience.map(Duration::from_secs);
-        let collection =
-            collector::collect(session, socket, &mut fleet, patience, interrupted, &mut progress)?;
+        let collection = collector::collect(
+            session,
+            socket,
+            &mut *fleet,
+            patience,
+            interrupted,
+            &mut |event| {
+                progress.see(event);
+            },
+        );
+        progress.finish();
+        let collection = collection?;
         let wall = before + collection.elapsed;
         let memory = memory::peak(fleet.peak_memory());
         for warning in fleet.end() {
@@ -387,7 +397,7 @@ impl Job {
                     counts_instructions: true,
                     log: fleet.log().map(Path::to_owned),
                 };
-                (Fleet::Qemu(fleet), origin)
+                (Box::new(fleet) as Box<dyn Fleet>, origin)
             }
             None => {
                 let fleet = NativeFleet::start(&blocks, options.picture.profile)?;
@@ -398,7 +408,7 @@ impl Job {
                     counts_instructions: false,
                     log: None,
                 };
-                (Fleet::Native(fleet), origin)
+                (Box::new(fleet) as Box<dyn Fleet>, origin)
             }
         };
         self.collect(&session, &socket, fleet, origin, start, interrupted)

@@ -311,8 +311,12 @@ impl Results<'_> {
         line(
             "packets",
             format!(
-                "{} received, {} duplicate, {} rejected, {} lost",
-                packets.received, packets.duplicate, packets.rejected, packets.lost
+                "{} received, {} duplicate ({:.2} %), {} rejected, {} lost",
+                packets.received,
+                packets.duplicate,
+                100.0 * packets.duplicate_share,
+                packets.rejected,
+                packets.lost
             ),
         );
         let memory = report
@@ -345,7 +349,7 @@ pub(super) fn per_core(record: &CoreRecord, counts_instructions: bool) -> report
         stack_size: stack.map(|farewell| farewell.stack_size),
         rejected: record.farewell.map(|farewell| farewell.rejected),
         restarts: record.restarts.len(),
-        fault: record.fault().map(str::to_owned),
+        fault: record.trouble().map(|cause| cause.explained()),
     }
 }
 

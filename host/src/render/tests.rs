@@ -7,7 +7,7 @@ use clap::Parser;
 use serde_json::Value;
 
 use super::*;
-use crate::collector::CoreRecord;
+use crate::collector::{Cause, CoreRecord};
 
 static RUNNING: AtomicBool = AtomicBool::new(false);
 static INTERRUPTED: AtomicBool = AtomicBool::new(true);
@@ -120,9 +120,10 @@ fn the_report_says_of_each_core_what_went_wrong_last() {
         (core.restarts, core.fault)
     };
     assert_eq!(said(&record), (0, None));
-    record.restarts = vec!["panic".to_owned(), "undefined instruction".to_owned()];
+    let ended = |how: &str| Cause::Ended(how.to_owned());
+    record.restarts = ["panic", "undefined instruction"].map(ended).to_vec();
     assert_eq!(said(&record), (2, Some("undefined instruction".to_owned())));
-    record.ended = Some("killed".to_owned());
+    record.ended = Some(ended("killed"));
     assert_eq!(said(&record), (2, Some("killed".to_owned())));
 }
 

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
 use clap::Parser;
-use host::collector::{self, Collection, End, Progress};
+use host::collector::{self, Collection, End};
 use host::firmware::Level;
 use host::firmware::board::Board;
 use host::firmware::symbols::{Place, explained};
@@ -96,10 +96,9 @@ fn collected(board: Board, name: &str, log: Option<Level>, flags: &str) -> (Coll
             ..Core::new(number, board, &elf, block)
         })
         .collect();
-    let mut fleet = Fleet::Qemu(QemuFleet::start(&qemu(), &cores, out.path()).unwrap());
-    let (running, mut progress) = (AtomicBool::new(false), Progress::Silent);
-    let collection =
-        collector::collect(&session, &socket, &mut fleet, None, &running, &mut progress).unwrap();
+    let mut fleet = QemuFleet::start(&qemu(), &cores, out.path()).unwrap();
+    let running = AtomicBool::new(false);
+    let collection = collector::collect(&session, &socket, &mut fleet, None, &running, &mut drop).unwrap();
     fleet.end();
     let log = std::fs::read_to_string(out.path().join("fleet.log"));
     (collection, log.unwrap_or_default())
@@ -121,14 +120,14 @@ fn a_core_that_fails_again_and_again_is_named_and_the_picture_is_complete_withou
         assert_eq!(failed.restarts.len(), RESTARTS);
         assert!(failed.ended.is_some());
         assert!(failed.units > 0, "what it did before it failed counts");
-        let fault = failed.fault().unwrap();
+        let fault = failed.trouble().unwrap().explained();
         let (given_up, end) = (failed.heard.unwrap(), collection.elapsed);
         println!("{board}: given up after {given_up:.1?} of {end:.1?}: {fault}");
         for words in ["undefined instruction at 0x", "failing::fail", "failing.rs:"] {
             assert!(fault.contains(words), "{words} in: {fault}");
         }
         for core in others {
-            assert_eq!((core.fault(), core.restarts.len()), (None, 0));
+            assert_eq!((core.trouble(), core.restarts.len()), (None, 0));
         }
         // Each of its lives ends with a word in the log, and nothing else went wrong.
         let lives = if log.is_some() { 1 + RESTARTS } else { 0 };
