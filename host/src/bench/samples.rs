@@ -105,7 +105,7 @@ fn kinds() -> impl Iterator<Item = (Arithmetic, Termination)> {
 #[derive(Debug, thiserror::Error)]
 pub enum SeriesError {
     /// There is no folder for the pictures.
-    #[error("cannot make a folder for temporary files: {0}; set TMPDIR to one with room")]
+    #[error("cannot make a folder for temporary files (set TMPDIR to one with room)")]
     Folder(io::Error),
     /// A render failed.
     #[error(transparent)]

@@ -17,11 +17,12 @@ pub enum BindError {
     )]
     Taken(u16),
     /// Anything else.
-    #[error("cannot listen on UDP port {port}: {cause}; choose another with --port")]
+    #[error("cannot listen on UDP port {port} (choose another with --port)")]
     Other {
         /// The port.
         port: u16,
         /// What the system said.
+        #[source]
         cause: io::Error,
     },
 }

@@ -34,11 +34,12 @@ pub enum FirmwareError {
     #[error(transparent)]
     Sources(#[from] NoWorkspace),
     /// A file could not be read or written.
-    #[error("firmware: {}: {cause}", path.display())]
+    #[error("firmware: {} cannot be read or written", path.display())]
     File {
         /// The file.
         path: PathBuf,
         /// What the system said.
+        #[source]
         cause: io::Error,
     },
     /// The build failed.

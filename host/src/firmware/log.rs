@@ -16,11 +16,12 @@ use crate::platform::workspace;
 #[derive(Debug, thiserror::Error)]
 pub enum LogError {
     /// The ELF could not be read.
-    #[error("cannot read {}: {cause}", path.display())]
+    #[error("cannot read {}", path.display())]
     File {
         /// The file.
         path: PathBuf,
         /// What the system said.
+        #[source]
         cause: io::Error,
     },
     /// The ELF says nothing of a log.

@@ -32,24 +32,26 @@ const LAST_LINES: usize = 5;
 #[derive(Debug, thiserror::Error)]
 pub enum FleetError {
     /// A core's files could not be written.
-    #[error("cannot write {path}: {cause}; give another --out or make room")]
+    #[error("cannot write {path} (give another --out or make room)")]
     File {
         /// The file.
         path: std::path::PathBuf,
         /// What the system said.
+        #[source]
         cause: std::io::Error,
     },
     /// What a core logs could not be read.
     #[error(transparent)]
     Log(#[from] crate::firmware::log::LogError),
     /// The emulator could not be started.
-    #[error("core {core}: cannot start {program}: {cause}")]
+    #[error("core {core}: cannot start {program}")]
     Start {
         /// The core.
         core: u16,
         /// The program.
         program: String,
         /// What the system said.
+        #[source]
         cause: std::io::Error,
     },
 }

@@ -15,8 +15,8 @@ const OURS: [&str; 2] = ["Cargo.lock", "firmware/runtime/Cargo.toml"];
 #[derive(Debug, thiserror::Error)]
 pub enum NoWorkspace {
     /// The current folder has been removed, or may not be entered.
-    #[error("the current folder is not to be had: {0}; change into one that is there")]
-    NoFolder(io::Error),
+    #[error("the current folder is not to be had (change into one that is there)")]
+    NoFolder(#[source] io::Error),
     /// The command does not stand in a checkout.
     #[error("{} is not in a checkout of this project; change into one", .0.display())]
     Elsewhere(PathBuf),

@@ -48,17 +48,18 @@ pub use trace::{TraceOptions, Traced, trace};
 #[derive(Debug, thiserror::Error)]
 pub enum RenderError {
     /// There is no default scene, or no place for the results.
-    #[error("{0}, or name a scene and a folder with --out")]
+    #[error("a scene and a folder (with --out) must be named here")]
     NoWorkspace(#[from] NoWorkspace),
     /// The scene is unusable.
     #[error(transparent)]
     Scene(#[from] SceneError),
     /// The folder for the results is.
-    #[error("cannot write to the folder {}: {cause}; choose another with --out", path.display())]
+    #[error("cannot write to the folder {} (choose another with --out)", path.display())]
     Out {
         /// The folder.
         path: PathBuf,
         /// What the system said.
+        #[source]
         cause: std::io::Error,
     },
     /// Another render has it.
@@ -81,7 +82,7 @@ pub enum RenderError {
     #[error("{0}")]
     TooLong(wire::boot::TooLong),
     /// The reference file is unusable.
-    #[error("the reference: {0}")]
+    #[error("the reference is of no use")]
     Reference(#[from] ReadError),
     /// The two cannot be compared.
     #[error(transparent)]
@@ -123,11 +124,12 @@ pub enum RenderError {
     #[error(transparent)]
     Capture(#[from] CaptureError),
     /// The debugger could not be run.
-    #[error("cannot run {}: {cause}", program.display())]
+    #[error("cannot run {}", program.display())]
     Debugger {
         /// The program.
         program: PathBuf,
         /// What the system said.
+        #[source]
         cause: std::io::Error,
     },
     /// The cores are gone.

@@ -58,7 +58,7 @@ pub struct Report {
     /// What a sample costs on the emulated core.
     pub cost: Cost,
     /// How far the picture is from the reference.
-    pub error: Error,
+    pub error: ErrorFigures,
     /// How far arithmetic alone took it: against the same tracer in double precision with the same random numbers.
     pub lockstep_error: Option<LockstepError>,
     /// The cores, one by one.
@@ -97,7 +97,7 @@ pub struct Cost {
 
 /// Error against the reference. The figures are defined in [`crate::oracle::compare`].
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Error {
+pub struct ErrorFigures {
     /// (mean - reference mean) / reference mean over all channels, signed.
     pub bias: Option<f64>,
     /// Upper bound of the standard error of `bias`.
@@ -145,7 +145,7 @@ pub struct TileTest {
 /// Error against the lockstep oracle.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LockstepError {
-    /// As in [`Error::bias`].
+    /// As in [`ErrorFigures::bias`].
     pub bias: Option<f64>,
     /// Upper bound of the standard error of `bias`: paths that rounding sends another way are noise.
     pub bias_standard_error: Option<f64>,
@@ -178,7 +178,7 @@ pub struct Core {
     pub fault: Option<String>,
 }
 
-impl Error {
+impl ErrorFigures {
     /// The report's share of a comparison with a reference of `reference_spp` samples per pixel.
     ///
     /// `noise_known` says that both sides had a variance; without it, what rests on it is not a measurement.
@@ -274,7 +274,7 @@ mod tests {
                 ..Packets::default()
             },
             cost: Cost::default(),
-            error: Error::default(),
+            error: ErrorFigures::default(),
             lockstep_error: None,
             per_core: vec![Core {
                 core: 1,
@@ -333,7 +333,7 @@ mod tests {
     #[test]
     fn a_comparison_fills_the_error_in() {
         let comparison = compare(&flat(0.55, Some(1e-4)), &flat(0.5, Some(1e-4))).unwrap();
-        let error = Error::new(&comparison, Some(1024), true);
+        let error = ErrorFigures::new(&comparison, Some(1024), true);
         assert!((error.bias.unwrap() - 0.1).abs() < 1e-12);
         assert!((error.max_tile_bias.unwrap() - 0.1).abs() < 1e-12);
         assert!((error.rmse.unwrap() - (0.05f64.powi(2) - 2e-4).sqrt()).abs() < 1e-12);
@@ -344,13 +344,16 @@ mod tests {
     #[test]
     fn without_noise_figures_that_rest_on_it_are_null_and_nothing_is_infinite() {
         let comparison = compare(&flat(0.55, None), &flat(0.5, None)).unwrap();
-        let error = Error::new(&comparison, None, false);
+        let error = ErrorFigures::new(&comparison, None, false);
         assert!((error.bias.unwrap() - 0.1).abs() < 1e-12);
         assert_eq!(
             (error.rmse, error.tiles, error.bias_standard_error),
             (None, None, None)
         );
-        assert_eq!(Error::new(&comparison, None, true).tiles.unwrap().max_z, None);
+        assert_eq!(
+            ErrorFigures::new(&comparison, None, true).tiles.unwrap().max_z,
+            None
+        );
     }
 
     #[test]

@@ -190,11 +190,11 @@ impl Results<'_> {
         let error = match verdict.map(|verdict| &verdict.against) {
             Some((reference, comparison)) => {
                 let noise_known = image.variance.is_some() && reference.variance.is_some();
-                report::Error::new(comparison, reference.spp, noise_known)
+                report::ErrorFigures::new(comparison, reference.spp, noise_known)
             }
-            None => report::Error {
+            None => report::ErrorFigures {
                 mean: image.picture.mean(),
-                ..report::Error::default()
+                ..report::ErrorFigures::default()
             },
         };
         Report {

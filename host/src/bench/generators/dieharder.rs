@@ -97,15 +97,16 @@ impl fmt::Display for Row {
 #[derive(Debug, thiserror::Error)]
 pub enum DieharderError {
     /// It could not be started.
-    #[error("cannot start {}: {cause}; is it a working dieharder?", program.display())]
+    #[error("cannot start {} (is it a working dieharder?)", program.display())]
     NotStarted {
         /// The program.
         program: PathBuf,
         /// Why.
+        #[source]
         cause: io::Error,
     },
     /// The pipe to or from it broke.
-    #[error("dieharder's numbers or results could not be piped: {0}; run it again")]
+    #[error("dieharder's numbers or results could not be piped (run it again)")]
     Pipe(#[from] io::Error),
     /// It stopped, or its table is not as expected.
     #[error("dieharder ended with {status} and {rows} results; run `{command}` by hand to see what it says")]

@@ -41,11 +41,12 @@ pub enum BenchError {
     #[error(transparent)]
     Firmware(#[from] FirmwareError),
     /// The emulator could not be started.
-    #[error("cannot start {}: {cause}", program.display())]
+    #[error("cannot start {}", program.display())]
     Start {
         /// The program.
         program: PathBuf,
         /// What the system said.
+        #[source]
         cause: io::Error,
     },
     /// The core did not do its work.

@@ -21,11 +21,12 @@ pub enum ReadmeError {
     #[error(transparent)]
     NoWorkspace(#[from] NoWorkspace),
     /// It cannot be read.
-    #[error("cannot read {}: {cause}", path.display())]
+    #[error("cannot read {}", path.display())]
     Read {
         /// The file.
         path: PathBuf,
         /// What the system said.
+        #[source]
         cause: io::Error,
     },
     /// It has no place for the list.

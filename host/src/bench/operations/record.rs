@@ -54,19 +54,21 @@ pub enum RecordError {
     #[error(transparent)]
     NoWorkspace(#[from] NoWorkspace),
     /// A file cannot be read.
-    #[error("cannot read {}: {cause}", path.display())]
+    #[error("cannot read {}", path.display())]
     Read {
         /// The file.
         path: PathBuf,
         /// What the system said.
+        #[source]
         cause: io::Error,
     },
     /// The record is no record.
-    #[error("{}: {cause}; write it anew with `cargo xtask verify --exhaustive --bless`", path.display())]
+    #[error("{} makes no sense (write it anew with `cargo xtask verify --exhaustive --bless`)", path.display())]
     Damaged {
         /// The file.
         path: PathBuf,
         /// What is wrong.
+        #[source]
         cause: serde_json::Error,
     },
     /// It cannot be written.

@@ -50,11 +50,12 @@ pub enum SetupError {
         advice: String,
     },
     /// An installation command could not be started.
-    #[error("set-up: `{command}` could not be started: {cause}")]
+    #[error("set-up: `{command}` could not be started")]
     NotStarted {
         /// The command.
         command: CommandLine,
         /// Why.
+        #[source]
         cause: std::io::Error,
     },
     /// An installation command failed.
