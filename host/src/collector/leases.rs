@@ -1,6 +1,6 @@
 //! Which core works at what: the lease table.
 //!
-//! A lease is a run of consecutive units that a core was told to render. The table is a state machine without a clock or
+//! A lease is a range of units that a core was told to render. The table is a state machine without a clock or
 //! a socket of its own: time is passed in, as the time since the collector started, and what must be sent comes out.
 //! A unit is in one of five states:
 //!
@@ -124,13 +124,13 @@ impl Holder {
         let lease = &mut self.leases[index];
         let units = lease.next..unit;
         lease.next = unit + 1;
+        let mut missing = Vec::new();
+        if let Some(skipped) = skipped {
+            missing = self.finish(index, skipped.saturating_sub(units.len() as u64));
+        }
         let certain = skipped.is_some();
-        let of_leases_before = skipped.map(|skipped| skipped.saturating_sub(units.len() as u64));
-        let mut missing = match of_leases_before {
-            Some(skipped) => self.finish(index, skipped),
-            None => self.finish(0, 0),
-        };
         missing.push(Missing { units, certain });
+        self.leases.retain(|lease| lease.next < lease.end);
         missing
     }
 
