@@ -1,4 +1,5 @@
-//! The project's commands, which `cargo xtask` builds and starts. Thin: each verb is one file, and what a test needs to reach is in the host library.
+//! The project's commands, which `cargo xtask` builds and starts. Thin: each verb is one file, and what a test needs to reach is in
+//! the host library.
 
 mod bench;
 mod check;

@@ -1,5 +1,6 @@
 //! What the collector knows of each core.
 
+use std::fmt;
 use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -17,6 +18,15 @@ pub enum Cause {
     Fault(Fault),
     /// The fleet saw it, and says this.
     Ended(String),
+}
+
+impl fmt::Display for Cause {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Fault(fault) => &fault.reason,
+            Self::Ended(how) => how,
+        })
+    }
 }
 
 impl Cause {
@@ -75,7 +85,7 @@ pub struct CoreRecord {
     /// What it said when it was told to stop.
     pub farewell: Option<Farewell>,
     /// What it said when it failed, in the life it has or had last.
-    pub fault: Option<Fault>,
+    pub failed: Option<Fault>,
     /// How it ended for good before it was told to.
     pub ended: Option<Cause>,
     /// Why it was started again, each time.
@@ -83,9 +93,18 @@ pub struct CoreRecord {
 }
 
 impl CoreRecord {
+    /// What it says, with the image it says it of.
+    pub(super) fn fault(&self, said: &FaultInfo<'_>) -> Fault {
+        Fault {
+            reason: said.reason.to_owned(),
+            address: said.address,
+            image: self.image.clone(),
+        }
+    }
+
     /// The last thing that went wrong with it.
     pub fn trouble(&self) -> Option<Cause> {
-        let fault = self.fault.clone().map(Cause::Fault);
+        let fault = self.failed.clone().map(Cause::Fault);
         fault
             .or_else(|| self.ended.clone())
             .or_else(|| self.restarts.last().cloned())
@@ -93,7 +112,7 @@ impl CoreRecord {
 
     /// Why it has ended: by its own word, or the fleet's, which is `how`.
     pub(super) fn cause(&self, how: impl FnOnce() -> String) -> Cause {
-        let fault = self.fault.clone().map(Cause::Fault);
+        let fault = self.failed.clone().map(Cause::Fault);
         fault.unwrap_or_else(|| Cause::Ended(how()))
     }
 
@@ -101,7 +120,7 @@ impl CoreRecord {
     pub(super) fn start_again(&mut self, cause: Cause) {
         self.restarts.push(cause);
         self.sequence.start_again();
-        (self.fault, self.source) = (None, None);
+        (self.failed, self.source) = (None, None);
     }
 
     /// What is known about its end, `now`.
@@ -114,7 +133,7 @@ impl CoreRecord {
         if !self.restarts.is_empty() {
             text.push_str(&format!(", started again {} times", self.restarts.len()));
         }
-        if let Some(fault) = &self.fault {
+        if let Some(fault) = &self.failed {
             text.push_str(&format!("\n    its last words: {}", fault.explained()));
         }
         for line in fleet.last_output(self.core) {

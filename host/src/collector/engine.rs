@@ -8,14 +8,14 @@ use std::time::Duration;
 use wire::boot::PixelOrder;
 use wire::{Command, FromCore, Message, Pixels, ToCore};
 
-use super::cores::{Cause, CoreRecord, Fault};
+use super::cores::{Cause, CoreRecord};
 use super::events::{Event, State};
 use super::intake::{Rejection, judge};
 use super::leases::{Arrival, Grant, Leases};
 use super::silence::Silence;
 use super::{CollectError, Collection, End, Packets};
-use crate::fleet::Fleet;
 use crate::fleet::session::Session;
+use crate::fleet::{Fleet, Policy};
 use crate::image::film::Film;
 
 /// When something is done.
@@ -31,6 +31,7 @@ pub struct Moment {
 #[derive(Debug)]
 pub struct Engine<'a> {
     session: &'a Session,
+    policy: Policy,
     silence: Silence,
     film: Film,
     packets: Packets,
@@ -53,6 +54,7 @@ impl<'a> Engine<'a> {
         };
         Ok(Self {
             session,
+            policy: fleet.policy(),
             silence,
             film: Film::new(session.plan.width, session.plan.height).with_exponent(session.exponent),
             packets: Packets::default(),
@@ -94,15 +96,8 @@ impl<'a> Engine<'a> {
         std::mem::take(&mut self.events)
     }
 
-    /// Judges a packet, and answers it where it asks for work or makes room for some. `sees_ends` says whether the fleet tells of a
-    /// core's end, too.
-    pub fn take(
-        &mut self,
-        payload: &[u8],
-        source: SocketAddr,
-        at: Moment,
-        sees_ends: bool,
-    ) -> Result<(), CollectError> {
+    /// Judges a packet, and answers it where it asks for work or makes room for some.
+    pub fn take(&mut self, payload: &[u8], source: SocketAddr, at: Moment) -> Result<(), CollectError> {
         let Some(packet) = self.admit(payload, source, at) else {
             return Ok(());
         };
@@ -117,10 +112,10 @@ impl<'a> Engine<'a> {
             Message::Pixels(pixels) => self.take_pixels(core, packet.seq, &pixels, at.now)?,
             Message::Farewell(_) => {}
             // Its end follows, and says whether it has another life.
-            Message::Fault(_) if sees_ends => self.leases.ended(core),
-            Message::Fault(_) => {
-                let cause = self.cores[usize::from(core)].cause(String::new);
-                self.retire(core, cause);
+            Message::Fault(_) if self.policy.sees_ends => self.leases.ended(core),
+            Message::Fault(fault) => {
+                let fault = self.cores[usize::from(core)].fault(&fault);
+                self.retire(core, Cause::Fault(fault));
             }
         }
         for grant in self.leases.again(core, at.emptied, at.now) {
@@ -166,13 +161,7 @@ impl<'a> Engine<'a> {
                 record.sequence.sent_before(packet.seq);
                 record.farewell = Some(farewell);
             }
-            Message::Fault(fault) => {
-                record.fault = Some(Fault {
-                    reason: fault.reason.to_owned(),
-                    address: fault.address,
-                    image: record.image.clone(),
-                });
-            }
+            Message::Fault(fault) => record.failed = Some(record.fault(&fault)),
         }
         Some(packet)
     }
@@ -244,17 +233,16 @@ impl<'a> Engine<'a> {
         }
     }
 
-    /// The core has failed and was started again, as it may be `most` times.
-    pub fn started_again(&mut self, core: u16, cause: Cause, most: usize) {
+    /// The core has failed and was started again.
+    pub fn started_again(&mut self, core: u16, cause: Cause) {
         self.leases.ended(core);
         self.leases.started_again(core);
         let record = &mut self.cores[usize::from(core)];
         record.start_again(cause.clone());
-        let time = record.restarts.len();
         self.events.push(Event::Restarted {
             core,
-            time,
-            most,
+            time: record.restarts.len(),
+            most: self.policy.restarts,
             cause,
         });
     }
@@ -278,16 +266,16 @@ impl<'a> Engine<'a> {
         cores.iter().for_each(|&core| self.send(core, Command::Stop));
     }
 
-    /// Whether nothing more will come of a fleet like this one.
-    pub fn is_deserted(&self, fleet: &dyn Fleet, now: Duration) -> bool {
-        let limit = self.silence.limit(fleet.policy().patience);
+    /// Whether nothing more will come.
+    pub fn is_deserted(&self, now: Duration) -> bool {
+        let limit = self.silence.limit(self.policy.patience);
         self.all_ended() || limit.is_some_and(|limit| now.saturating_sub(self.last_word()) >= limit)
     }
 
     /// Tells, once, of a silence of all cores that the user should know about.
-    pub fn mind_silence(&mut self, fleet: &dyn Fleet, now: Duration) {
+    pub fn mind_silence(&mut self, now: Duration) {
         let began = self.last_word();
-        let lasts = self.silence.worth_a_word(fleet.policy().patience, began, now);
+        let lasts = self.silence.worth_a_word(self.policy.patience, began, now);
         self.events.extend(lasts.map(|lasts| Event::Silence { lasts }));
     }
 

@@ -215,11 +215,6 @@ impl Leases {
         }
     }
 
-    /// Whether every unit is in.
-    pub fn is_complete(&self) -> bool {
-        self.done.len() == self.units as usize
-    }
-
     /// Units that are in.
     pub fn done(&self) -> usize {
         self.done.len()

@@ -157,7 +157,7 @@ impl Simulation {
                 return Err(format!("hangs with {} of {units} units in", host.leases.done()));
             }
             self.handle(now, event, &mut host, &mut fleet);
-            if host.leases.is_complete() {
+            if host.leases.done() == units as usize {
                 return host.outcome(now);
             }
             host.leases.settle(now);
@@ -300,6 +300,28 @@ fn nothing_is_rendered_twice_because_packets_overtake_each_other_or_wait_at_a_do
             println!("{cores} cores, {faults:?}: {outcome:?}");
             assert!(outcome.twice <= 0.02, "{cores} cores, {faults:?}: {outcome:?}");
         }
+    }
+}
+
+/// The rule before leased again at once whatever seemed lost. It took 4.95, 4.99 and 6.02 s in the mean of the same fleets (as of commit
+/// be4a624). Means of 60 runs that spread by 2 s each are known to 0.26 s, and their differences to 0.37 s: 1 s is nearly three of these.
+#[test]
+fn a_third_of_all_packets_lost_cost_no_more_time_than_before() {
+    for (cores, before) in [(2, 4.95), (8, 4.99), (32, 6.02)] {
+        let faults = Faults {
+            loss_percent: 30,
+            jitter_ms: 2,
+            ..NONE
+        };
+        let run = |seed| simulate(seed, faults, 100 * u32::from(cores), cores, &[]);
+        let outcomes: Vec<Outcome> = (0..60).map(run).collect();
+        let mean = |of: fn(&Outcome) -> f64| outcomes.iter().map(of).sum::<f64>() / 60.0;
+        let (took, twice) = (
+            mean(|outcome| outcome.took.as_secs_f64()),
+            mean(|outcome| outcome.twice),
+        );
+        println!("{cores} cores: {took:.2} s, {:.2} % twice", 100.0 * twice);
+        assert!(took < before + 1.0, "{cores} cores: {took} s, {before} s before");
     }
 }
 

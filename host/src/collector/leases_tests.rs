@@ -53,9 +53,9 @@ fn a_unit_counts_once() {
     assert_eq!(leases.arrived(0, 0, Some(0), ms(1)), Arrival::First);
     assert_eq!(leases.arrived(0, 0, Some(0), ms(1)), Arrival::Duplicate);
     assert_eq!(leases.arrived(7, 0, Some(0), ms(1)), Arrival::Duplicate);
-    assert!(!leases.is_complete());
+    assert_eq!(leases.done(), 1);
     assert_eq!(leases.arrived(0, 1, Some(0), ms(2)), Arrival::First);
-    assert!(leases.is_complete());
+    assert_eq!(leases.done(), 2);
 }
 
 #[test]

@@ -77,6 +77,7 @@ pub(super) fn collect_by(
     let end = run.work(interrupted)?;
     let elapsed = clock();
     run.close()?;
+    run.tell();
     Ok(run.engine.collection(end, elapsed))
 }
 
@@ -112,18 +113,17 @@ impl Run<'_> {
             if received.is_some() {
                 continue;
             }
-            if self.engine.is_deserted(self.fleet, self.at.now) {
+            if self.engine.is_deserted(self.at.now) {
                 let why = self.engine.describe_desertion(self.fleet, self.at.now);
                 return Ok(End::Deserted(why));
             }
-            self.engine.mind_silence(self.fleet, self.at.now);
+            self.engine.mind_silence(self.at.now);
         }
         Ok(End::Complete)
     }
 
     fn take(&mut self, payload: &[u8], source: SocketAddr) -> Result<(), CollectError> {
-        let sees_ends = self.fleet.policy().sees_ends;
-        self.engine.take(payload, source, self.at, sees_ends)?;
+        self.engine.take(payload, source, self.at)?;
         self.send();
         Ok(())
     }
@@ -143,9 +143,14 @@ impl Run<'_> {
         }
         self.engine.tick(self.at.now);
         self.send();
-        self.engine.events().into_iter().for_each(&mut self.observer);
+        self.tell();
         (self.observer)(Event::State(self.engine.state((self.clock)())));
         Ok(())
+    }
+
+    /// Tells the observer what has happened.
+    fn tell(&mut self) {
+        self.engine.events().into_iter().for_each(&mut self.observer);
     }
 
     /// Takes all that has arrived.
@@ -167,12 +172,10 @@ impl Run<'_> {
         }
         let cause = record.cause(|| self.fleet.how_ended(core));
         match self.fleet.start_again(core) {
-            Ok(true) => self
-                .engine
-                .started_again(core, cause, self.fleet.policy().restarts),
+            Ok(true) => self.engine.started_again(core, cause),
             Ok(false) => self.engine.retire(core, cause),
             Err(error) => {
-                let why = format!("{}; {}", cause.explained(), in_full(&error));
+                let why = format!("{cause}; {}", in_full(&error));
                 self.engine.retire(core, Cause::Ended(why));
             }
         }

@@ -376,4 +376,17 @@ mod tests {
         let back: Report = serde_json::from_slice(&std::fs::read(&path).unwrap()).unwrap();
         assert_eq!(back, report());
     }
+
+    /// Else fuzzing would start from files that are refused at once.
+    #[test]
+    fn the_reports_that_fuzzing_starts_from_are_read() {
+        let folder = crate::platform::workspace::file("fuzz/corpus/report").unwrap();
+        let files: Vec<_> = std::fs::read_dir(folder).unwrap().collect();
+        assert!(!files.is_empty());
+        for file in files {
+            let path = file.unwrap().path();
+            let read = serde_json::from_slice::<Report>(&std::fs::read(&path).unwrap());
+            assert!(read.is_ok(), "{}: {read:?}", path.display());
+        }
+    }
 }
