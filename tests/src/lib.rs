@@ -2,7 +2,7 @@
 
 use std::ffi::OsStr;
 use std::os::unix::ffi::OsStrExt;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::sync::OnceLock;
 
@@ -19,6 +19,21 @@ use host::scene::{Scene, compile};
 use tempfile::TempDir;
 use tracer::profile::Profile;
 use tracer::unit::{Plan, Termination};
+
+/// Writes a program of a test: a script for `sh`. Another process writes it, because a program that any thread has open for writing while
+/// another starts a process cannot be run until that has run its own.
+///
+/// # Panics
+/// If it cannot be written.
+pub fn script(path: &Path, text: &str) {
+    let write = r#"printf '#!/bin/sh\n%s\n' "$2" > "$1" && chmod +x "$1""#;
+    let status = Command::new("sh")
+        .args(["-c", write, "sh"])
+        .arg(path)
+        .arg(text)
+        .status();
+    assert!(status.expect("a shell").success(), "{}", path.display());
+}
 
 /// A file of the repository.
 ///

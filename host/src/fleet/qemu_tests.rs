@@ -1,13 +1,11 @@
 //! The fleet with a script in QEMU's place.
 
 use super::*;
-use std::os::unix::fs::PermissionsExt;
 
 /// A program that takes QEMU's place.
 pub(crate) fn fake_qemu(folder: &Path, script: &str) -> PathBuf {
     let path = folder.join("fake-qemu");
-    fs::write(&path, format!("#!/bin/sh\n{script}\n")).expect("a script");
-    fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).expect("an executable script");
+    crate::platform::script::script(&path, script);
     path
 }
 

@@ -4,6 +4,8 @@ pub mod console;
 pub mod file;
 pub mod interrupt;
 pub mod memory;
+#[cfg(test)]
+pub(crate) mod script;
 pub mod setup;
 mod wait;
 pub mod workspace;

@@ -1,6 +1,5 @@
 //! Fleets of emulated cores, from the outside: what the command leaves in its folder, whatever happens to the cores.
 
-use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::atomic::AtomicBool;
@@ -14,7 +13,7 @@ use host::scene::{MAX_SPHERES, Scene};
 use serde_json::Value;
 use tempfile::TempDir;
 use tracer::profile::{Paper, Precise};
-use whole_system::{cornell, film, plan, repository};
+use whole_system::{cornell, film, plan, repository, script};
 
 #[derive(Parser)]
 struct Flags {
@@ -276,8 +275,7 @@ fn without_its_programs_it_says_how_to_get_them_and_stops() {
     let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| repository("target"), PathBuf::from);
     let bare = tempfile::tempdir().unwrap();
     let apt = bare.path().join("apt-get");
-    std::fs::write(&apt, "#!/bin/sh\nexit 99\n").unwrap();
-    std::fs::set_permissions(&apt, std::fs::Permissions::from_mode(0o755)).unwrap();
+    script(&apt, "exit 99");
     let output = Command::new(target.join("release/commands"))
         .args([
             "render",

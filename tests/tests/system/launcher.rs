@@ -1,17 +1,10 @@
 //! `cargo xtask` itself: what it says while cargo builds the commands, and that it becomes them. Cargo and the commands are scripts here.
 
 use std::fs;
-use std::os::unix::fs::PermissionsExt;
-use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
 use tempfile::TempDir;
-use whole_system::{program, said};
-
-fn script(path: &Path, text: &str) {
-    fs::write(path, format!("#!/bin/sh\n{text}\n")).expect("a file");
-    fs::set_permissions(path, fs::Permissions::from_mode(0o755)).expect("it is ours");
-}
+use whole_system::{program, said, script};
 
 /// A target folder with this program, beside commands that say who they are and what they were given.
 fn folder(cargo: &str) -> TempDir {
@@ -21,7 +14,12 @@ fn folder(cargo: &str) -> TempDir {
         .expect("a folder");
     let release = folder.path().join("release");
     fs::create_dir(&release).expect("a folder");
-    fs::copy(program("xtask"), release.join("xtask")).expect("a copy");
+    // Not by this process: see `script`.
+    let copied = Command::new("cp")
+        .arg(program("xtask"))
+        .arg(release.join("xtask"))
+        .status();
+    assert!(copied.expect("cp is there").success());
     script(&release.join("commands"), "echo \"$$ $# $*\"; exit 7");
     script(&folder.path().join("cargo"), cargo);
     folder

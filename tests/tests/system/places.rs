@@ -1,12 +1,11 @@
 //! Where a command stands, and what it finds there: checkouts that were moved or copied, folders below the root, machines without rustup.
 
 use std::fs;
-use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
 
 use serde_json::Value;
 use tempfile::TempDir;
-use whole_system::{repository, said, xtask};
+use whole_system::{repository, said, script, xtask};
 
 /// A native render of a picture that takes no time.
 const TINY: [&str; 9] = [
@@ -56,8 +55,7 @@ fn system(cargo: &str) -> TempDir {
         ("qemu-system-arm", ""),
     ] {
         let program = root.join("bin").join(name);
-        fs::write(&program, format!("#!/bin/sh\n{does}\n")).unwrap();
-        fs::set_permissions(&program, fs::Permissions::from_mode(0o755)).unwrap();
+        script(&program, does);
     }
     system
 }

@@ -1,7 +1,6 @@
 //! The programs as processes: signals reach them, cores end with them, exit codes pass through them, cores from elsewhere join.
 
 use std::fs;
-use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
@@ -12,7 +11,7 @@ use host::firmware::{self, Recipe};
 use serde_json::Value;
 use tempfile::TempDir;
 use tracer::scene::Capabilities;
-use whole_system::{program, repository, said, toolchain, xtask};
+use whole_system::{program, repository, said, script, toolchain, xtask};
 
 /// A picture that takes an emulated core a moment.
 const SMALL: [&str; 6] = ["--size", "64x48", "--spp", "16", "--reference", "none"];
@@ -191,13 +190,8 @@ fn an_interruption_ends_set_up() {
     let programs = tempfile::tempdir().expect("a folder");
     let started = programs.path().join("started");
     for name in ["apt-get", "env", "sudo"] {
-        let script = format!(
-            "#!/bin/sh\necho $$ > '{}'\nexec /bin/sleep 60\n",
-            started.display()
-        );
-        let path = programs.path().join(name);
-        fs::write(&path, script).expect("a script");
-        fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).expect("an executable script");
+        let does = format!("echo $$ > '{}'\nexec /bin/sleep 60", started.display());
+        script(&programs.path().join(name), &does);
     }
     let mut command = xtask(&["qemu-run", "Cargo.toml", "--board", "versatilepb"]);
     let child = command.env("PATH", programs.path()).spawn().expect("it starts");

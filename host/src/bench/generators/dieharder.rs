@@ -189,14 +189,13 @@ fn feed(
 
 #[cfg(test)]
 mod tests {
-    use std::fs::{self, Permissions};
-    use std::os::unix::fs::PermissionsExt;
+    use std::fs;
 
     use super::*;
+    use crate::platform::script::script;
 
     /// A stand-in that reads 8 words and prints what the real one does.
-    const STAND_IN: &str = r#"#!/bin/sh
-head --bytes 32 >"$0.words"
+    const STAND_IN: &str = r#"head --bytes 32 >"$0.words"
 cat <<'TABLE'
 #=============================================================================#
 #            dieharder version 3.31.1 Copyright 2003 Robert G. Brown          #
@@ -213,11 +212,10 @@ stdin_input_raw|  4.24e+07  |2164748134|
 TABLE
 "#;
 
-    fn stand_in(script: &str) -> (tempfile::TempDir, PathBuf) {
+    fn stand_in(text: &str) -> (tempfile::TempDir, PathBuf) {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let program = folder.path().join("dieharder");
-        fs::write(&program, script).expect("a file");
-        fs::set_permissions(&program, Permissions::from_mode(0o755)).expect("a program");
+        script(&program, text);
         (folder, program)
     }
 
@@ -249,7 +247,7 @@ TABLE
 
     #[test]
     fn a_battery_without_results_is_an_error() {
-        let (_folder, program) = stand_in("#!/bin/sh\necho 'what is -g?'\nexit 3\n");
+        let (_folder, program) = stand_in("echo 'what is -g?'\nexit 3");
         let error = run(&program, Battery::Only(15), 0.., Width::Half, |_| ()).expect_err("no result");
         let said = error.to_string();
         assert!(
