@@ -1,13 +1,11 @@
 //! What commands say, where nobody reads it and where there is no room for it: no panic, whichever of them it is.
 
-use std::fs::{self, File};
+use std::fs::File;
 use std::io::pipe;
 use std::process::{Command, Output, Stdio};
 
 use host::platform::console::CLOSED_PIPE;
 use whole_system::{program, said, xtask};
-
-use crate::processes::wait_for;
 
 /// A pipe whose reader has gone.
 fn closed() -> Stdio {
@@ -112,40 +110,5 @@ fn a_render_whose_notes_nobody_can_read_is_a_render() {
         let mut missing = xtask(&["render", "no-such-scene.toml"]);
         missing.stderr(nobody());
         assert_eq!(output(missing).status.code(), Some(1));
-    }
-}
-
-/// Hours of work do not go with a folder, and a folder that was only removed is made anew.
-#[test]
-fn a_picture_whose_folder_is_gone_when_it_is_done_is_kept() {
-    for in_the_way in [false, true] {
-        let place = tempfile::tempdir().expect("a folder");
-        let (out, state) = (place.path().join("out"), place.path().join("state"));
-        // What an earlier run left goes when this one begins.
-        let old = out.join("cores/core-0.log");
-        fs::create_dir_all(out.join("cores")).expect("a folder");
-        fs::write(&old, "").expect("a file");
-        let mut command = xtask(&["render", "--backend", "native", "--size", "64x48", "--spp", "512"]);
-        command.args(["--reference", "none", "--out"]).arg(&out);
-        let child = command.env("XDG_STATE_HOME", &state).spawn().expect("it starts");
-        wait_for("the start", || !old.exists());
-        fs::remove_dir_all(&out).expect("it is there");
-        if in_the_way {
-            fs::write(&out, "").expect("a file");
-        }
-        let output = child.wait_with_output().expect("its output");
-        let said = said(&output);
-        let kept = if in_the_way {
-            assert_eq!(output.status.code(), Some(1), "{said}");
-            let (_, kept) = said.split_once("the results are in ").expect("where they are");
-            kept.split_once(" instead").expect("where they are").0.into()
-        } else {
-            assert!(output.status.success(), "{said}");
-            out
-        };
-        let report = fs::read_to_string(kept.join("report.json")).expect("a report");
-        assert!(report.contains("\"complete\": true"), "{report}");
-        assert!(kept.join("image.png").is_file() && kept.join("image.exr").is_file());
-        assert!(kept.starts_with(if in_the_way { &state } else { place.path() }));
     }
 }

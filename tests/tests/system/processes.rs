@@ -98,6 +98,14 @@ impl Running {
     }
 }
 
+/// Processor time that a process has taken so far, in clock ticks: `utime` of proc(5).
+pub(crate) fn time_taken(process: &Path) -> u64 {
+    let stat = fs::read_to_string(process.join("stat")).expect("it lives");
+    let (_, fields) = stat.rsplit_once(") ").expect("a name in parentheses");
+    let utime = fields.split(' ').nth(11).expect("52 fields");
+    utime.parse().expect("a count")
+}
+
 fn is_running(process: &str) -> bool {
     let status = fs::read_to_string(format!("/proc/{process}/status")).unwrap_or_default();
     status
@@ -143,6 +151,34 @@ fn interrupted(child: std::process::Child) -> String {
     assert_eq!(output.status.code(), Some(130), "{}", said(&output));
     assert!(took < Duration::from_secs(1), "{took:?}");
     said(&output)
+}
+
+/// Hours of work do not go with a folder, and a folder that was only removed is made anew.
+#[test]
+fn a_picture_whose_folder_is_gone_when_it_is_written_is_kept() {
+    for in_the_way in [false, true] {
+        let place = tempfile::tempdir().expect("a folder");
+        let (out, state) = (place.path().join("out"), place.path().join("state"));
+        // It would take minutes, so that it is not done before its folder is gone.
+        let endless = ["--backend", "native", "--size", "64x48", "--spp", "262144"];
+        let mut command = render(&out, &[&endless, &["--reference", "none"]]);
+        let child = command.env("XDG_STATE_HOME", &state).spawn().expect("it starts");
+        let process = Path::new("/proc").join(child.id().to_string());
+        wait_for("some of the picture", || time_taken(&process) > 50);
+        fs::remove_dir_all(&out).expect("it is there");
+        if in_the_way {
+            fs::write(&out, "").expect("a file");
+        }
+        signal("INT", &child.id().to_string());
+        let output = child.wait_with_output().expect("its output");
+        let said = said(&output);
+        assert_eq!(output.status.code(), Some(130), "{said}");
+        let (_, kept) = said.split_once("as far as it came is ").expect("where it is");
+        let kept = Path::new(kept.split_once("/image.png").expect("where it is").0);
+        assert!(kept.starts_with(if in_the_way { &state } else { &out }), "{said}");
+        assert!(kept.join("image.png").is_file() && kept.join("image.exr").is_file());
+        assert!(kept.join("report.json").is_file());
+    }
 }
 
 /// The reference would take hours; the picture is there already.
