@@ -9,8 +9,6 @@ use std::time::{Duration, Instant};
 use host::firmware::board::Board;
 use whole_system::{program, repository, said, xtask};
 
-use crate::processes::time_taken;
-
 /// 48 units of work: a moment.
 const SMALL: [&str; 6] = ["--size", "32x24", "--spp", "8", "--reference", "none"];
 const UNITS: u64 = 48;
@@ -90,6 +88,14 @@ fn wait_for(what: &str, log: &Path, mut happened: impl FnMut(&str) -> bool) {
         );
         std::thread::sleep(Duration::from_millis(20));
     }
+}
+
+/// Processor time that a process has taken so far, in clock ticks: `utime` of proc(5).
+fn time_taken(process: &Path) -> u64 {
+    let stat = fs::read_to_string(process.join("stat")).expect("it lives");
+    let (_, fields) = stat.rsplit_once(") ").expect("a name in parentheses");
+    let utime = fields.split(' ').nth(11).expect("52 fields");
+    utime.parse().expect("a count")
 }
 
 /// By `script`, which gives the command a terminal.

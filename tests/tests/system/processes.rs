@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 use host::firmware::arithmetic::Arithmetic;
 use host::firmware::board::Board;
 use host::firmware::{self, Recipe};
+use host::fleet::NativeFleet;
 use serde_json::Value;
 use tempfile::TempDir;
 use tracer::scene::Capabilities;
@@ -98,14 +99,6 @@ impl Running {
     }
 }
 
-/// Processor time that a process has taken so far, in clock ticks: `utime` of proc(5).
-pub(crate) fn time_taken(process: &Path) -> u64 {
-    let stat = fs::read_to_string(process.join("stat")).expect("it lives");
-    let (_, fields) = stat.rsplit_once(") ").expect("a name in parentheses");
-    let utime = fields.split(' ').nth(11).expect("52 fields");
-    utime.parse().expect("a count")
-}
-
 fn is_running(process: &str) -> bool {
     let status = fs::read_to_string(format!("/proc/{process}/status")).unwrap_or_default();
     status
@@ -151,34 +144,6 @@ fn interrupted(child: std::process::Child) -> String {
     assert_eq!(output.status.code(), Some(130), "{}", said(&output));
     assert!(took < Duration::from_secs(1), "{took:?}");
     said(&output)
-}
-
-/// Hours of work do not go with a folder, and a folder that was only removed is made anew.
-#[test]
-fn a_picture_whose_folder_is_gone_when_it_is_written_is_kept() {
-    for in_the_way in [false, true] {
-        let place = tempfile::tempdir().expect("a folder");
-        let (out, state) = (place.path().join("out"), place.path().join("state"));
-        // It would take minutes, so that it is not done before its folder is gone.
-        let endless = ["--backend", "native", "--size", "64x48", "--spp", "262144"];
-        let mut command = render(&out, &[&endless, &["--reference", "none"]]);
-        let child = command.env("XDG_STATE_HOME", &state).spawn().expect("it starts");
-        let process = Path::new("/proc").join(child.id().to_string());
-        wait_for("some of the picture", || time_taken(&process) > 50);
-        fs::remove_dir_all(&out).expect("it is there");
-        if in_the_way {
-            fs::write(&out, "").expect("a file");
-        }
-        signal("INT", &child.id().to_string());
-        let output = child.wait_with_output().expect("its output");
-        let said = said(&output);
-        assert_eq!(output.status.code(), Some(130), "{said}");
-        let (_, kept) = said.split_once("as far as it came is ").expect("where it is");
-        let kept = Path::new(kept.split_once("/image.png").expect("where it is").0);
-        assert!(kept.starts_with(if in_the_way { &state } else { &out }), "{said}");
-        assert!(kept.join("image.png").is_file() && kept.join("image.exr").is_file());
-        assert!(kept.join("report.json").is_file());
-    }
 }
 
 /// The reference would take hours; the picture is there already.
@@ -320,6 +285,45 @@ fn the_collector_takes_cores_that_are_started_elsewhere() {
         said(&unbooted)
     );
     assert!(said(&unbooted).contains("bad boot block"), "{}", said(&unbooted));
+}
+
+/// Hours of work do not go with a folder, and a folder that was only removed is made anew. The cores begin when it is gone.
+#[test]
+fn a_picture_whose_folder_is_gone_when_it_is_done_is_kept() {
+    for in_the_way in [false, true] {
+        let place = tempfile::tempdir().expect("a folder");
+        let [out, state, boot] = ["out", "state", "boot"].map(|name| place.path().join(name));
+        let mut collector = Command::new(program("collector"));
+        collector.args(SMALL).args(["--cores", "1", "--port", "0"]);
+        collector
+            .args(["--host-address", "127.0.0.1", "--boot-dir"])
+            .arg(&boot);
+        collector.arg("--out").arg(&out).env("XDG_STATE_HOME", &state);
+        collector.current_dir(repository("."));
+        collector.stdout(Stdio::piped()).stderr(Stdio::piped());
+        let collector = collector.spawn().expect("it starts");
+        let block = || fs::read(boot.join("core-0.boot")).unwrap_or_default();
+        wait_for("the boot block", || !block().is_empty());
+        fs::remove_dir_all(&out).expect("it is there");
+        if in_the_way {
+            fs::write(&out, "").expect("a file");
+        }
+        let _core = NativeFleet::start(&[block()], Arithmetic::Precise).expect("a thread");
+        let output = collector.wait_with_output().expect("its output");
+        let said = said(&output);
+        let kept = if in_the_way {
+            assert_eq!(output.status.code(), Some(1), "{said}");
+            let (_, kept) = said.split_once("the results are in ").expect("where they are");
+            kept.split_once(" instead").expect("where they are").0.into()
+        } else {
+            assert!(output.status.success(), "{said}");
+            out
+        };
+        let report = fs::read_to_string(kept.join("report.json")).expect("a report");
+        assert!(report.contains("\"complete\": true"), "{report}");
+        assert!(kept.join("image.png").is_file() && kept.join("image.exr").is_file());
+        assert!(kept.starts_with(if in_the_way { &state } else { place.path() }));
+    }
 }
 
 /// With the variables that `cargo xtask toolchain` prints, plain cargo is enough.
