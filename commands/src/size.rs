@@ -5,14 +5,14 @@ use std::process::ExitCode;
 
 use anyhow::{Context, ensure};
 use host::firmware::arithmetic::Arithmetic;
-use host::firmware::board::{Board, DTCM_BUDGET, ITCM_BUDGET};
-use host::firmware::{self, Capability, ImageSize, Recipe};
+use host::firmware::board::Board;
+use host::firmware::footprint::{self, Footprint};
+use host::firmware::{self, Capability, Recipe, growth};
 use host::fleet::session::boot_block_len;
 use host::platform::console::say;
 use host::platform::setup::{self, Toolchain, Wanted};
 use host::platform::workspace;
 use host::scene::{Scene, compile};
-use serde::Serialize;
 
 use crate::SetUp;
 
@@ -24,31 +24,16 @@ pub(crate) struct Arguments {
     /// Write the table as JSON, too
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
+    /// Say what has changed since a table was written as JSON, in all and by function
+    #[arg(long, value_name = "FILE")]
+    compare: Option<PathBuf>,
     #[command(flatten)]
     set_up: SetUp,
 }
 
-/// One image.
-#[derive(Serialize)]
-pub(crate) struct Row {
-    board: &'static str,
-    scene: String,
-    profile: &'static str,
-    #[serde(flatten)]
-    size: ImageSize,
-    /// Code memory that the tracer takes, with its arithmetic, and the frame around it.
-    tracer_bytes: u64,
-    frame_bytes: u64,
-}
-
-impl Row {
-    fn data(&self) -> u64 {
-        self.size.dtcm_bytes + self.size.stack_bytes
-    }
-}
-
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
     let scene = Scene::load(&workspace::scene(arguments.scene.as_deref())?)?;
+    let before = arguments.compare.as_deref().map(footprint::read).transpose()?;
     let tools = setup::ensure(
         Wanted {
             firmware: true,
@@ -61,67 +46,35 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
         let json = serde_json::to_string_pretty(&rows)?;
         std::fs::write(path, json + "\n").with_context(|| format!("cannot write {}", path.display()))?;
     }
-    say(table(&rows))?;
+    say(footprint::table(&rows))?;
+    if let Some(before) = before {
+        say(format!("\n{}", growth::table(&before, &rows)?))?;
+    }
     Ok(ExitCode::SUCCESS)
 }
 
 /// Builds and measures the images for a scene; fails where one is over the budget.
-pub(crate) fn measure(toolchain: &Toolchain, scene: &Scene) -> anyhow::Result<Vec<Row>> {
+pub(crate) fn measure(toolchain: &Toolchain, scene: &Scene) -> anyhow::Result<Vec<Footprint>> {
     // The image does not depend on the size of the picture, nor does the boot block's length.
     let compiled = compile(scene, 4, 3);
     let boot_block = boot_block_len(&compiled);
-    let row = |(board, profile): (Board, Arithmetic)| {
-        let image = firmware::build(
-            toolchain,
-            board,
-            &Recipe {
-                profile,
-                needs: compiled.needs.with(Capability::Roulette),
-                log: None,
-            },
-        )?;
-        let tracer_bytes = firmware::tracer_bytes(&image.elf)?;
-        let row = Row {
-            board: board.name(),
-            scene: scene.name.clone(),
-            profile: profile.name(),
-            tracer_bytes,
-            frame_bytes: image.size.itcm_bytes - tracer_bytes,
-            size: image.size.with_boot_block(boot_block),
+    let footprint = |(board, profile): (Board, Arithmetic)| {
+        let recipe = Recipe {
+            profile,
+            needs: compiled.needs.with(Capability::Roulette),
+            log: None,
         };
+        let image = firmware::build(toolchain, board, &recipe)?;
+        let footprint = Footprint::of(board, profile, &scene.name, &image, boot_block)?;
         ensure!(
-            row.size.itcm_bytes <= ITCM_BUDGET && row.data() <= DTCM_BUDGET,
+            footprint.is_within_budget(),
             "an image is over the budget:\n{}",
-            table(&[row])
+            footprint::table(&[footprint])
         );
-        Ok(row)
+        Ok(footprint)
     };
     let both = Board::ALL
         .into_iter()
         .flat_map(|board| Arithmetic::ALL.map(|profile| (board, profile)));
-    both.map(row).collect()
-}
-
-/// The rows for people.
-pub(crate) fn table(rows: &[Row]) -> String {
-    let mut lines = vec![format!(
-        "{:12} {:10} {:8} {:>32} {:>22}",
-        "board", "scene", "profile", "code memory (tracer + frame)", "data memory (stacks)"
-    )];
-    lines.extend(rows.iter().map(|row| {
-        let stack = row.size.stack_bytes;
-        format!(
-            "{:12} {:10} {:8} {:>32} {:>22}",
-            row.board,
-            row.scene,
-            row.profile,
-            format!(
-                "{} ({} + {})",
-                row.size.itcm_bytes, row.tracer_bytes, row.frame_bytes
-            ),
-            format!("{} ({stack})", row.data())
-        )
-    }));
-    lines.push(format!("{:32} {ITCM_BUDGET:>32} {DTCM_BUDGET:>22}", "budget"));
-    lines.join("\n")
+    both.map(footprint).collect()
 }

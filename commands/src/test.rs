@@ -9,6 +9,7 @@ use anyhow::{Context, bail};
 use host::firmware::Level;
 use host::firmware::arithmetic::Arithmetic;
 use host::firmware::board::Board;
+use host::firmware::footprint::{self, Footprint};
 use host::firmware::{self, Capability, Recipe};
 use host::platform::console::say;
 use host::platform::setup::{self, Toolchain, Wanted};
@@ -57,7 +58,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
             (host, firmware) => host.and(firmware),
         }
     })?;
-    say(size::table(&rows))?;
+    say(footprint::table(&rows))?;
     step("whole system", || {
         shown(cargo(&[
             "test",
@@ -107,7 +108,7 @@ fn host_steps() -> anyhow::Result<()> {
     step("arithmetic against the truth", || verify::sampled().map(|_| ()))
 }
 
-fn firmware_steps(toolchain: &Toolchain, scene: &Scene) -> anyhow::Result<Vec<size::Row>> {
+fn firmware_steps(toolchain: &Toolchain, scene: &Scene) -> anyhow::Result<Vec<Footprint>> {
     step("fixedmath for a Cortex-M0", || {
         succeed(firmware::cargo_for(
             toolchain,

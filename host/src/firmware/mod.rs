@@ -8,6 +8,8 @@ pub mod arithmetic;
 pub mod board;
 mod build;
 mod elf;
+pub mod footprint;
+pub mod growth;
 pub mod log;
 mod recipe;
 mod share;

@@ -5,7 +5,7 @@
 use std::fmt;
 use std::path::Path;
 
-use addr2line::Loader;
+use addr2line::{Loader, demangle_auto};
 use wire::FaultInfo;
 
 use crate::platform::workspace;
@@ -90,6 +90,11 @@ impl fmt::Display for Place {
             None => Ok(()),
         }
     }
+}
+
+/// A symbol of the linker's as people name it.
+pub(super) fn readable(symbol: &str) -> String {
+    without_arguments(&demangle_auto(symbol.into(), None))
 }
 
 /// A demangled name without the arguments of generic functions and types, which make it longer than any line.

@@ -15,4 +15,5 @@ mod operations;
 mod output;
 mod places;
 mod processes;
+mod size;
 mod trace;
