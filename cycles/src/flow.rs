@@ -1,0 +1,99 @@
+//! The flow of a core's execution: which blocks of instructions ran, how often, and in which order.
+
+/// The instruction set of a flow.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Isa {
+    /// A32, words of 32 bits.
+    Arm,
+    /// Thumb-2, words of 16 or 32 bits.
+    Thumb,
+}
+
+/// An instruction in memory.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Instruction {
+    /// Where it lies.
+    pub address: u32,
+    /// Its word. The first halfword of a 32-bit Thumb instruction is in the upper half.
+    pub encoding: u32,
+    /// Its length: 2 or 4.
+    pub bytes: u8,
+}
+
+impl Instruction {
+    /// The address after it.
+    pub fn end(&self) -> u32 {
+        self.address.wrapping_add(self.bytes.into())
+    }
+}
+
+/// Instructions that run one after the other. Only the last may go elsewhere.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Block {
+    /// The instructions, at least one.
+    pub instructions: Vec<Instruction>,
+    /// How often each really accessed memory, where it is a conditional access; else 0.
+    pub passed: Vec<u64>,
+}
+
+impl Block {
+    /// Its first instruction's address.
+    pub fn start(&self) -> Option<u32> {
+        self.instructions.first().map(|instruction| instruction.address)
+    }
+
+    /// The address after its last instruction.
+    pub fn end(&self) -> Option<u32> {
+        self.instructions.last().map(Instruction::end)
+    }
+}
+
+/// One block after another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Edge {
+    /// The block before; none where recording began.
+    pub from: Option<usize>,
+    /// The block that ran.
+    pub to: usize,
+    /// How often.
+    pub count: u64,
+}
+
+/// What ran between the entry of the recorded function and its return, once or many times.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Flow {
+    /// The instruction set.
+    pub isa: Isa,
+    /// All blocks.
+    pub blocks: Vec<Block>,
+    /// All pairs of blocks that ran one after the other.
+    pub edges: Vec<Edge>,
+}
+
+impl Flow {
+    /// How often each block ran.
+    pub fn executions(&self) -> Vec<u64> {
+        let mut executions = vec![0; self.blocks.len()];
+        for edge in &self.edges {
+            executions[edge.to] += edge.count;
+        }
+        executions
+    }
+
+    /// Instructions that ran, those whose condition failed included.
+    pub fn instructions(&self) -> u64 {
+        let executions = self.executions();
+        let lengths = self.blocks.iter().map(|block| block.instructions.len() as u64);
+        lengths
+            .zip(executions)
+            .map(|(length, executions)| length * executions)
+            .sum()
+    }
+}
+
+/// What a plugin has recorded: one flow, or one a call of the function.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Recording {
+    /// The flows.
+    pub segments: Vec<Flow>,
+}
