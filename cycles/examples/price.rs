@@ -1,10 +1,10 @@
-//! Prints what a recording costs on an ARM9E-S, by the functions of its image: `price RECORDING IMAGE`.
+//! Prints what a recording costs in cycles, by the functions of its image: `price RECORDING IMAGE`.
 
 use std::collections::BTreeMap;
 use std::io::Write;
 
 use anyhow::Context;
-use cycles::{arm9, file};
+use cycles::{Assumptions, file, price};
 use object::{Object, ObjectSymbol, SymbolKind};
 
 fn main() -> anyhow::Result<()> {
@@ -21,7 +21,11 @@ fn main() -> anyhow::Result<()> {
         functions.insert(symbol.address() & !1, symbol.name()?);
     }
     let mut sums: BTreeMap<&str, (u64, u64, u64)> = BTreeMap::new();
-    for priced in recording.segments.iter().flat_map(arm9::price) {
+    for priced in recording
+        .segments
+        .iter()
+        .flat_map(|flow| price(flow, Assumptions::default()))
+    {
         let function = functions
             .range(..=u64::from(priced.address))
             .next_back()

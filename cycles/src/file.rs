@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use crate::flow::{Block, Edge, Flow, Instruction, Isa, Recording};
 
 const MAGIC: [u8; 8] = *b"armflow\n";
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 /// Stands for "no block before".
 const NONE: u32 = u32::MAX;
 
@@ -48,11 +48,13 @@ pub fn encode(recording: &Recording) -> Vec<u8> {
         put(&mut bytes, flow.blocks.len() as u32);
         for block in &flow.blocks {
             put(&mut bytes, block.instructions.len() as u32);
-            for (instruction, passed) in block.instructions.iter().zip(&block.passed) {
+            let counts = block.passed.iter().zip(&block.from_code);
+            for (instruction, (passed, from_code)) in block.instructions.iter().zip(counts) {
                 put(&mut bytes, instruction.address);
                 put(&mut bytes, instruction.encoding);
                 put(&mut bytes, instruction.bytes.into());
                 bytes.extend(passed.to_le_bytes());
+                bytes.extend(from_code.to_le_bytes());
             }
         }
         put(&mut bytes, flow.edges.len() as u32);
@@ -116,6 +118,7 @@ fn block(rest: &mut &[u8]) -> Option<Block> {
                 .filter(|bytes| matches!(bytes, 2 | 4))?,
         });
         block.passed.push(double(rest)?);
+        block.from_code.push(double(rest)?);
     }
     (!block.instructions.is_empty()).then_some(block)
 }

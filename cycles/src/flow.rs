@@ -1,5 +1,7 @@
 //! The flow of a core's execution: which blocks of instructions ran, how often, and in which order.
 
+use crate::branch::{self, Next};
+
 /// The instruction set of a flow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Isa {
@@ -32,8 +34,10 @@ impl Instruction {
 pub struct Block {
     /// The instructions, at least one.
     pub instructions: Vec<Instruction>,
-    /// How often each really accessed memory, where it is a conditional access; else 0.
+    /// How often each really accessed memory, where it may not have or loads; else 0.
     pub passed: Vec<u64>,
+    /// How often that began in instruction memory.
+    pub from_code: Vec<u64>,
 }
 
 impl Block {
@@ -78,6 +82,28 @@ impl Flow {
             executions[edge.to] += edge.count;
         }
         executions
+    }
+
+    /// How often the recorded function was entered.
+    pub fn calls(&self) -> u64 {
+        let entries = self.edges.iter().filter(|edge| edge.from.is_none());
+        entries.map(|edge| edge.count).sum()
+    }
+
+    /// Where an exception came between two blocks, if anywhere: the address before, and the one after. What it cost is not to be
+    /// known, so such a flow has no price.
+    pub fn interruption(&self) -> Option<(u32, u32)> {
+        let edges = self.edges.iter().filter(|edge| edge.count > 0);
+        edges.into_iter().find_map(|edge| {
+            let last = self.blocks[edge.from?].instructions.last()?;
+            let start = self.blocks[edge.to].start()?;
+            let expected = match branch::next(self.isa, last) {
+                Next::Following => start == last.end(),
+                Next::Target(target) => start == target || start == last.end(),
+                Next::Anywhere => true,
+            };
+            (!expected).then_some((last.address, start))
+        })
     }
 
     /// Instructions that ran, those whose condition failed included.

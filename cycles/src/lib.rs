@@ -1,7 +1,8 @@
 //! What a core's execution costs in cycles.
 //!
 //! QEMU executes instructions and knows no pipeline. So a plugin (`cycles-plugin`) records which blocks of instructions ran after
-//! which, a [`flow::Recording`], and this library prices it afterwards: [`arm9::price`] by the tables of the ARM9E-S.
+//! which, a [`flow::Recording`], and this library prices it afterwards by the
+//! tables of the ARM9E-S or of the Cortex-M3: [`price()`] instruction by instruction, [`cycles()`] in all.
 //!
 //! By hand, until `cargo xtask profile` does it:
 //!
@@ -21,8 +22,15 @@
 //! `IMAGE` is what the render has built last in `target/firmware/images`.
 #![forbid(unsafe_code)]
 
-pub mod access;
-pub mod arm9;
+mod arm9;
+pub mod branch;
 pub mod class;
+mod cortex_m3;
 pub mod file;
 pub mod flow;
+mod pipeline;
+pub mod price;
+pub mod recorder;
+
+pub use pipeline::Estimate;
+pub use price::{Assumptions, Cycles, Priced, cycles, price};

@@ -1,10 +1,9 @@
 //! A plugin of QEMU's that records a core's flow of execution. It knows no prices: `cycles` has them.
 //!
 //! Arguments: `isa=arm` or `isa=thumb`; `entry=ADDRESS`, of a function to be recorded, one or more; `out=PATH`, which is written when
-//! QEMU ends; `each=on`, where every call is to be a flow of its own.
+//! QEMU ends; `each=on`, where every call is to be a flow of its own; `code_end=ADDRESS`, where instruction memory ends.
 
 mod api;
-mod recorder;
 
 use std::ffi::{CStr, c_char, c_int, c_uint, c_void};
 use std::io::Write;
@@ -13,7 +12,7 @@ use std::sync::atomic::{AtomicPtr, Ordering};
 
 use cycles::file;
 use cycles::flow::{Instruction, Isa};
-use recorder::{Recorder, Seen, Wanted};
+use cycles::recorder::{Recorder, Wanted};
 
 /// The version of QEMU's interface that this was made for; QEMU looks for it.
 #[unsafe(no_mangle)]
@@ -28,11 +27,8 @@ struct Plugin {
 /// Made once, when the plugin is loaded, and there until QEMU ends.
 static PLUGIN: AtomicPtr<Plugin> = AtomicPtr::new(std::ptr::null_mut());
 
-/// An instruction whose accesses to memory are counted.
-struct Access {
-    seen: *mut Seen,
-    place: usize,
-}
+/// Instructions that a block has at most, a power of two: QEMU's own limit.
+const BLOCK_LENGTH: usize = 1024;
 
 /// Called by QEMU when it loads the plugin.
 ///
@@ -83,6 +79,7 @@ fn set_up(info: &api::Info, words: &[String]) -> Result<Plugin, String> {
         isa: Isa::Arm,
         entries: Vec::new(),
         each: false,
+        code_end: 0,
     };
     let mut file = None;
     for word in words {
@@ -91,11 +88,12 @@ fn set_up(info: &api::Info, words: &[String]) -> Result<Plugin, String> {
             ("isa", "arm") => wanted.isa = Isa::Arm,
             ("isa", "thumb") => wanted.isa = Isa::Thumb,
             ("each", _) => wanted.each = value == "on",
+            ("code_end", _) => wanted.code_end = address(value)?,
             ("out", _) => file = Some(PathBuf::from(value)),
             ("entry", _) => wanted.entries.push(address(value)?),
             _ => {
                 return Err(format!(
-                    "`{word}` is none of its arguments (isa, entry, out, each)"
+                    "`{word}` is none of its arguments (isa, entry, out, each, code_end)"
                 ));
             }
         }
@@ -114,7 +112,7 @@ fn address(text: &str) -> Result<u32, String> {
     let digits = text.strip_prefix("0x").unwrap_or(text);
     // A Thumb function's symbol has its lowest bit set; its instructions lie at even addresses.
     let parsed = u32::from_str_radix(digits, 16).map(|address| address & !1);
-    parsed.map_err(|_| format!("`entry={text}` is no hexadecimal address"))
+    parsed.map_err(|_| format!("`{text}` is no hexadecimal address"))
 }
 
 fn complain(error: &str) {
@@ -139,23 +137,26 @@ extern "C" fn translated(_id: api::Id, block: *mut api::Block) {
             .map(|place| api::qemu_plugin_tb_get_insn(block, place))
             .collect();
         let instructions = handles.iter().map(|&handle| instruction(handle)).collect();
-        let (seen, conditional) = plugin().recorder.block(instructions);
-        api::qemu_plugin_register_vcpu_tb_exec_cb(block, executed, api::NO_REGISTERS, seen.cast());
-        for (place, &handle) in handles
-            .iter()
-            .enumerate()
-            .filter(|&(place, _)| conditional[place])
-        {
-            let access = Box::into_raw(Box::new(Access { seen, place }));
+        let recorder = &mut plugin().recorder;
+        let number = recorder.block(instructions);
+        api::qemu_plugin_register_vcpu_tb_exec_cb(block, executed, api::NO_REGISTERS, data(number));
+        let watched = recorder.watched(number);
+        for (place, &handle) in handles.iter().enumerate().filter(|&(place, _)| watched[place]) {
+            let data = data(number * BLOCK_LENGTH + place);
             api::qemu_plugin_register_vcpu_mem_cb(
                 handle,
                 accessed,
                 api::NO_REGISTERS,
                 api::READS_AND_WRITES,
-                access.cast(),
+                data,
             );
         }
     }
+}
+
+/// A number as what QEMU hands to a callback.
+fn data(number: usize) -> *mut c_void {
+    std::ptr::without_provenance_mut(number)
 }
 
 /// # Safety
@@ -182,22 +183,20 @@ unsafe fn instruction(handle: *const api::Instruction) -> Instruction {
     }
 }
 
-extern "C" fn executed(_processor: c_uint, seen: *mut c_void) {
-    // SAFETY: a callback; the data are the block that it was registered with, which is never freed.
-    unsafe { plugin().recorder.executed(&mut *seen.cast()) }
+extern "C" fn executed(_processor: c_uint, data: *mut c_void) {
+    // SAFETY: a callback.
+    unsafe { plugin().recorder.executed(data.addr()) }
 }
 
-extern "C" fn accessed(_processor: c_uint, _info: u32, _address: u64, access: *mut c_void) {
-    // SAFETY: a callback; the data are those that it was registered with, which are never freed.
-    unsafe {
-        let Access { seen, place } = &*access.cast();
-        plugin().recorder.accessed(&mut **seen, *place);
-    }
+extern "C" fn accessed(_processor: c_uint, _info: u32, address: u64, data: *mut c_void) {
+    let (number, place) = (data.addr() / BLOCK_LENGTH, data.addr() % BLOCK_LENGTH);
+    // SAFETY: a callback.
+    unsafe { plugin().recorder.accessed(number, place, address as u32) }
 }
 
 extern "C" fn ended(_id: api::Id, _data: *mut c_void) {
-    // SAFETY: a callback, the last.
-    let plugin = unsafe { plugin() };
+    // SAFETY: it came of a box, and this is the last callback.
+    let plugin = unsafe { Box::from_raw(PLUGIN.swap(std::ptr::null_mut(), Ordering::Relaxed)) };
     let Some(recording) = plugin.recorder.finish() else {
         return complain("the core ended within the recorded function: nothing is written");
     };

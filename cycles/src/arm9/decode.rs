@@ -1,62 +1,14 @@
 //! What an A32 instruction reads, writes and costs on an ARM9E-S.
 
 use crate::class::Class;
+use crate::pipeline::{Range, Timing, bit, field};
 
 /// The program counter.
 const PC: u32 = 15;
 
-/// What one instruction does to the pipeline, if its condition holds.
-#[derive(Clone, Debug)]
-pub(super) struct Timing {
-    /// Its kind.
-    pub(super) class: Class,
-    /// Cycles in the Execute stage, with what a jump costs that it always makes.
-    pub(super) cycles: u32,
-    /// Registers that it needs at its start, a bit each.
-    pub(super) reads: u16,
-    /// Registers that it needs as an accumulator only.
-    pub(super) accumulates: u16,
-    /// Registers that are there later, and how many cycles after its end.
-    pub(super) late: Vec<(u32, u32)>,
-    /// Registers that it writes in time.
-    pub(super) writes: u16,
-    /// Whether it may go elsewhere.
-    pub(super) jumps: bool,
-}
-
-impl Timing {
-    const fn new(class: Class, cycles: u32, reads: u16, writes: u16) -> Self {
-        Self {
-            class,
-            cycles,
-            reads,
-            accumulates: 0,
-            late: Vec::new(),
-            writes,
-            jumps: false,
-        }
-    }
-
-    fn branch(cycles: u32, reads: u16) -> Self {
-        Self {
-            jumps: true,
-            ..Self::new(Class::Branch, cycles, reads, 0)
-        }
-    }
-}
-
-const fn bit(register: u32) -> u16 {
-    1 << register
-}
-
-/// A register's number from its lowest bit's place in the word.
-const fn field(word: u32, place: u32) -> u32 {
-    word >> place & 15
-}
-
-/// Whether it has a condition that may fail.
-pub(super) const fn is_conditional(word: u32) -> bool {
-    word >> 28 < 0xe
+/// A jump that takes so many cycles.
+const fn branch(cycles: u32, reads: u16) -> Timing {
+    Timing::branch(Range::exactly(cycles), reads)
 }
 
 /// The timing of a word.
@@ -64,6 +16,13 @@ pub(super) fn decode(word: u32) -> Timing {
     if word >> 28 == 0xf {
         return unconditional(word);
     }
+    Timing {
+        conditional: word >> 28 != 0xe,
+        ..conditional(word)
+    }
+}
+
+fn conditional(word: u32) -> Timing {
     match word >> 25 & 7 {
         0 if word & 0x90 == 0x90 => multiply_or_small_access(word),
         0 if word & 0x0190_0000 == 0x0100_0000 => miscellaneous(word),
@@ -73,7 +32,7 @@ pub(super) fn decode(word: u32) -> Timing {
         4 => multiple_access(word),
         5 => Timing {
             writes: if word >> 24 & 1 == 1 { bit(14) } else { 0 },
-            ..Timing::branch(3, 0)
+            ..branch(3, 0)
         },
         _ => Timing::new(Class::Other, 1, 0, 0),
     }
@@ -82,7 +41,7 @@ pub(super) fn decode(word: u32) -> Timing {
 /// `BLX` to an address, and `PLD`.
 fn unconditional(word: u32) -> Timing {
     if word >> 25 & 7 == 5 {
-        return Timing::branch(3, 0);
+        return branch(3, 0);
     }
     Timing::new(Class::Other, 1, bit(field(word, 16)), 0)
 }
@@ -103,14 +62,15 @@ fn data_processing(word: u32) -> Timing {
     }
     let compares = matches!(opcode, 8..=11);
     let to = field(word, 12);
-    let mut timing = Timing::new(Class::Alu, 1, reads, if compares { 0 } else { bit(to) });
-    if by_register {
-        (timing.class, timing.cycles) = (Class::RegisterShift, 2);
+    let (class, cycles) = if by_register {
+        (Class::RegisterShift, 2)
+    } else {
+        (Class::Alu, 1)
+    };
+    match to {
+        PC if !compares => branch(cycles + 2, reads),
+        _ => Timing::new(class, cycles, reads, if compares { 0 } else { bit(to) }),
     }
-    if to == PC && !compares {
-        timing = Timing::branch(timing.cycles + 2, reads);
-    }
-    timing
 }
 
 fn to_status(word: u32, reads: u16) -> Timing {
@@ -125,7 +85,7 @@ fn miscellaneous(word: u32) -> Timing {
         (0, 1 | 3) => to_status(word, bit(a)),
         (0, _) => Timing::new(Class::Other, 2, 0, bit(to)),
         (1, 3) => Timing::new(Class::Alu, 1, bit(a), bit(to)),
-        (1 | 3, _) => Timing::branch(3, bit(a)),
+        (1 | 3, _) => branch(3, bit(a)),
         (5, _) => Timing {
             late: vec![(to, 1)],
             ..Timing::new(Class::Alu, 1, bit(a) | bit(c), 0)
@@ -159,23 +119,34 @@ fn multiply_or_small_access(word: u32) -> Timing {
     }
     let (a, b) = (field(word, 0), field(word, 8));
     let (high, low) = (field(word, 16), field(word, 12));
-    let flags = if word >> 20 & 1 == 1 { 2 } else { 0 };
     let adds = word >> 21 & 1 == 1;
+    // Whose flags are set takes two cycles more, after which the whole result is there.
+    let (flags, late) = if word >> 20 & 1 == 1 {
+        (2, Vec::new())
+    } else {
+        (0, vec![(high, 1)])
+    };
     match word >> 23 & 3 {
         0 => Timing {
             accumulates: if adds { bit(low) } else { 0 },
-            late: vec![(high, 1)],
-            ..Timing::new(Class::Multiply, 2 + flags, bit(a) | bit(b), 0)
+            late,
+            ..Timing::new(Class::Multiply, 2 + flags, bit(a) | bit(b), bit(high))
         },
         1 => Timing {
             accumulates: if adds { bit(low) | bit(high) } else { 0 },
-            late: vec![(high, 1)],
-            ..Timing::new(Class::LongMultiply, 3 + flags, bit(a) | bit(b), bit(low))
+            late,
+            ..Timing::new(
+                Class::LongMultiply,
+                3 + flags,
+                bit(a) | bit(b),
+                bit(low) | bit(high),
+            )
         },
         // SWP.
         _ => Timing {
+            stores: bit(a),
             late: vec![(low, 1)],
-            ..Timing::new(Class::Load, 2, bit(a) | bit(high), 0)
+            ..Timing::new(Class::Load, 2, bit(high), 0)
         },
     }
 }
@@ -207,8 +178,10 @@ fn small_access(word: u32) -> Timing {
             late: vec![(to | 1, 1)],
             ..Timing::new(Class::Load, 2, reads, writes | bit(to & !1))
         },
-        (false, 3) => Timing::new(Class::Store, 2, reads | bit(to), writes),
-        (false, _) => Timing::new(Class::Store, 1, reads | bit(to), writes),
+        (false, kind) => Timing {
+            stores: if kind == 3 { bit(to) | bit(to | 1) } else { bit(to) },
+            ..Timing::new(Class::Store, if kind == 3 { 2 } else { 1 }, reads, writes)
+        },
     }
 }
 
@@ -219,13 +192,15 @@ fn single_access(word: u32) -> Timing {
     let to = field(word, 12);
     let cycles = if shifted { 2 } else { 1 };
     if word >> 20 & 1 == 0 {
-        return Timing::new(Class::Store, cycles, reads | bit(to), writes);
+        return Timing {
+            stores: bit(to),
+            ..Timing::new(Class::Store, cycles, reads, writes)
+        };
     }
     if to == PC {
         return Timing {
-            class: Class::Branch,
             writes,
-            ..Timing::branch(cycles + 4, reads)
+            ..branch(cycles + 4, reads)
         };
     }
     let byte = word >> 22 & 1 == 1;
@@ -242,12 +217,15 @@ fn multiple_access(word: u32) -> Timing {
     let writes = if word >> 21 & 1 == 1 { base } else { 0 };
     let cycles = count.max(2);
     if word >> 20 & 1 == 0 {
-        return Timing::new(Class::Store, cycles, base | list, writes);
+        return Timing {
+            stores: list,
+            ..Timing::new(Class::Store, cycles, base, writes)
+        };
     }
     if list & bit(PC) != 0 {
         return Timing {
             writes: writes | list & !bit(PC),
-            ..Timing::branch(count + 4, base)
+            ..branch(count + 4, base)
         };
     }
     let last = 15 - list.leading_zeros().min(15);

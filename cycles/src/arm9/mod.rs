@@ -1,168 +1,37 @@
 //! The ARM9E-S, the processor of the ARM968E-S, with tightly coupled memory and no caches.
+//!
+//! Its table is chapter 8 of the ARM9E-S Technical Reference Manual (ARM DDI 0165 and DDI 0240): cycles of each instruction, and the
+//! interlocks between them. A result that is late makes the first instruction that needs it wait, unless others passed the time; a
+//! product is not waited for by what adds to it, because the multiplier forwards it to its own accumulator.
 
 mod decode;
 
-use std::collections::BTreeMap;
-
 use crate::class::Class;
-use crate::flow::{Flow, Instruction};
-use decode::{Timing, decode, is_conditional};
-
-/// What an instruction has cost in all.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Priced {
-    /// Where it lies.
-    pub address: u32,
-    /// How often it ran, failed conditions included.
-    pub executions: u64,
-    /// Its cycles, with its stalls and its jumps.
-    pub cycles: u64,
-    /// Cycles that it waited for a load.
-    pub load_stalls: u64,
-    /// Cycles that it waited for a product.
-    pub multiply_stalls: u64,
-    /// Its kind.
-    pub class: Class,
-}
-
-/// Prices a flow, instruction by instruction, in the order of their addresses.
-pub fn price(flow: &Flow) -> Vec<Priced> {
-    let timings: Vec<Vec<Timing>> = flow
-        .blocks
-        .iter()
-        .map(|block| {
-            block
-                .instructions
-                .iter()
-                .map(|instruction| decode(instruction.encoding))
-                .collect()
-        })
-        .collect();
-    let executions = flow.executions();
-    let mut ends: Vec<u64> = executions.clone();
-    let mut prices = BTreeMap::new();
-    for edge in &flow.edges {
-        let mut board = Scoreboard::default();
-        if let Some(from) = edge.from {
-            ends[from] = ends[from].saturating_sub(edge.count);
-            let (block, timings) = (&flow.blocks[from], &timings[from]);
-            let jumped = block.end() != flow.blocks[edge.to].start();
-            for (place, timing) in timings.iter().enumerate() {
-                let last = place + 1 == timings.len();
-                let failed = last && timing.jumps && !jumped;
-                board.issue(timing, !failed);
-            }
-            if let (Some(instruction), Some(timing)) = (block.instructions.last(), timings.last()) {
-                charge_jump(&mut prices, instruction, timing, jumped, edge.count);
-            }
-        }
-        let block = &flow.blocks[edge.to];
-        let runs = executions[edge.to];
-        for ((instruction, timing), &passed) in block
-            .instructions
-            .iter()
-            .zip(&timings[edge.to])
-            .zip(&block.passed)
-        {
-            let stall = board.issue(timing, true);
-            let price = entry(&mut prices, instruction, timing);
-            price.executions += edge.count;
-            price.load_stalls += edge.count * u64::from(stall.load);
-            price.multiply_stalls += edge.count * u64::from(stall.multiply);
-            price.cycles += edge.count * u64::from(stall.load + stall.multiply);
-            if !timing.jumps {
-                let accesses = matches!(timing.class, Class::Load | Class::Store);
-                let passed = match is_conditional(instruction.encoding) && accesses {
-                    // Of all that passed, this edge's share.
-                    true => (u128::from(passed) * u128::from(edge.count) / u128::from(runs)) as u64,
-                    false => edge.count,
-                };
-                price.cycles += passed * u64::from(timing.cycles) + (edge.count - passed);
-            }
-        }
-    }
-    for ((block, timings), ends) in flow.blocks.iter().zip(&timings).zip(ends) {
-        if let (Some(instruction), Some(timing)) = (block.instructions.last(), timings.last()) {
-            charge_jump(&mut prices, instruction, timing, true, ends);
-        }
-    }
-    prices.into_values().collect()
-}
-
-fn entry<'a>(
-    prices: &'a mut BTreeMap<u32, Priced>,
-    instruction: &Instruction,
-    timing: &Timing,
-) -> &'a mut Priced {
-    prices.entry(instruction.address).or_insert(Priced {
-        address: instruction.address,
-        executions: 0,
-        cycles: 0,
-        load_stalls: 0,
-        multiply_stalls: 0,
-        class: timing.class,
-    })
-}
-
-fn charge_jump(
-    prices: &mut BTreeMap<u32, Priced>,
-    instruction: &Instruction,
-    timing: &Timing,
-    jumped: bool,
-    count: u64,
-) {
-    if timing.jumps {
-        let jumped = jumped || !is_conditional(instruction.encoding);
-        let cycles = if jumped { timing.cycles } else { 1 };
-        entry(prices, instruction, timing).cycles += count * u64::from(cycles);
-    }
-}
-
-/// What an instruction waits for.
-#[derive(Clone, Copy, Debug, Default)]
-struct Stall {
-    load: u32,
-    multiply: u32,
-}
+use crate::flow::Instruction;
+use crate::pipeline::{Estimate, Pipeline, Stall, Timing};
 
 /// Which registers are not there yet.
 #[derive(Clone, Debug, Default)]
-struct Scoreboard {
+pub(crate) struct Arm9 {
     /// Cycles until each register can be used.
     late: [u32; 16],
     /// Those that come of a load.
     loaded: u16,
 }
 
-impl Scoreboard {
-    /// Issues an instruction whose condition holds or fails, and says what it waits for.
-    fn issue(&mut self, timing: &Timing, passed: bool) -> Stall {
-        let waits = |register: &u32| {
-            let bit = 1 << register;
-            let forwarded = timing.accumulates & bit != 0 && self.loaded & bit == 0;
-            timing.reads & bit != 0 || timing.accumulates & bit != 0 && !forwarded
-        };
-        let late = |register: u32| self.late[register as usize];
-        let longest = (0..16).filter(waits).max_by_key(|&register| late(register));
-        let mut stall = Stall::default();
-        if let Some(register) = longest {
-            let cycles = late(register);
-            match self.loaded >> register & 1 {
-                1 => stall.load = cycles,
-                _ => stall.multiply = cycles,
-            }
-        }
-        let cycles = if passed { timing.cycles } else { 1 };
-        self.advance(stall.load + stall.multiply + cycles);
-        if passed {
-            self.write(timing);
-        }
-        stall
-    }
-
-    fn advance(&mut self, cycles: u32) {
-        for late in &mut self.late {
-            *late = late.saturating_sub(cycles);
+impl Arm9 {
+    /// Cycles until an instruction that begins now has a register, if it needs it.
+    fn lacks(&self, timing: &Timing, register: u32) -> u32 {
+        let (late, bit) = (self.late[register as usize], 1 << register);
+        let is_product = self.loaded & bit == 0;
+        let accumulates = timing.accumulates & bit != 0 && !is_product;
+        if timing.reads & bit != 0 || accumulates {
+            late
+        } else if timing.stores & bit != 0 {
+            // Registers are stored one a cycle.
+            late.saturating_sub((timing.stores & (bit - 1)).count_ones())
+        } else {
+            0
         }
     }
 
@@ -178,5 +47,37 @@ impl Scoreboard {
                 _ => self.loaded &= !bit,
             }
         }
+    }
+}
+
+impl Pipeline for Arm9 {
+    fn decode(instructions: &[Instruction]) -> Vec<Timing> {
+        let words = instructions.iter().map(|instruction| instruction.encoding);
+        words.map(decode::decode).collect()
+    }
+
+    fn wait(&self, timing: &Timing, _estimate: Estimate) -> Stall {
+        let mut stall = Stall::default();
+        for register in 0..16 {
+            let late = self.lacks(timing, register);
+            if late > stall.cycles() {
+                let loaded = self.loaded >> register & 1 == 1;
+                let (load, multiply) = if loaded { (late, 0) } else { (0, late) };
+                stall = Stall { load, multiply };
+            }
+        }
+        stall
+    }
+
+    fn issue(&mut self, timing: &Timing, passed: bool, estimate: Estimate) -> u32 {
+        let cycles = if passed { timing.cycles.of(estimate) } else { 1 };
+        let elapsed = self.wait(timing, estimate).cycles() + cycles;
+        for late in &mut self.late {
+            *late = late.saturating_sub(elapsed);
+        }
+        if passed {
+            self.write(timing);
+        }
+        cycles
     }
 }
