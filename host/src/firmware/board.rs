@@ -8,6 +8,8 @@ use std::ops::Range;
 use std::os::unix::ffi::{OsStrExt, OsStringExt};
 use std::path::Path;
 
+use cycles::flow::Isa;
+
 /// Usable bytes of instruction memory: code, constants and first values.
 pub const ITCM_BUDGET: u64 = 0x7F00;
 /// Usable bytes of data memory: boot block, data and stacks.
@@ -35,6 +37,7 @@ struct Traits {
     name: &'static str,
     processor: &'static str,
     target: &'static str,
+    isa: Isa,
     itcm: Range<u64>,
     dtcm: Range<u64>,
     machine: &'static [&'static str],
@@ -47,6 +50,7 @@ const VERSATILEPB: Traits = Traits {
     name: "versatilepb",
     processor: "an ARMv5TE core",
     target: "armv5te-none-eabi",
+    isa: Isa::Arm,
     itcm: 0..0x8000,
     dtcm: 0x0040_0000..0x0041_0000,
     machine: &[
@@ -71,6 +75,7 @@ const MPS2_AN385: Traits = Traits {
     name: "mps2-an385",
     processor: "a Cortex-M3",
     target: "thumbv7m-none-eabi",
+    isa: Isa::Thumb,
     itcm: 0..0x8000,
     dtcm: 0x2000_0000..0x2001_0000,
     machine: &["-M", "mps2-an385"],
@@ -103,6 +108,11 @@ impl Board {
     /// The compiler's name for its processor.
     pub const fn target(self) -> &'static str {
         self.traits().target
+    }
+
+    /// The instruction set that its images are in.
+    pub const fn isa(self) -> Isa {
+        self.traits().isa
     }
 
     /// The addresses of instruction memory.
@@ -160,6 +170,18 @@ pub fn capture_to(file: &Path) -> [OsString; 2] {
     ["-object".into(), with_path(&dump, file)]
 }
 
+/// The words that make QEMU load the plugin `cycles-plugin`, which writes a recording of what runs within the function at `entry`.
+pub fn record_flow(plugin: &Path, isa: Isa, entry: u32, file: &Path) -> [OsString; 2] {
+    let isa = match isa {
+        Isa::Arm => "arm",
+        Isa::Thumb => "thumb",
+    };
+    let mut words = with_path("file=", plugin);
+    words.push(format!(",isa={isa},entry={entry:#x}"));
+    words.push(with_path(",out=", file));
+    ["-plugin".into(), words]
+}
+
 /// The words that make QEMU wait for a debugger on a TCP port of this host before the first instruction.
 pub fn wait_for_debugger(port: u16) -> [OsString; 3] {
     ["-S".into(), "-gdb".into(), format!("tcp:127.0.0.1:{port}").into()]
@@ -207,6 +229,15 @@ mod tests {
         assert!(words.contains(&console), "{words:?}");
         let dump = option("filter-dump,id=capture,netdev=net,file=");
         assert_eq!(capture_to(path)[1], dump);
+        let [_, words] = record_flow(path, Isa::Thumb, 0x240, path);
+        let of_path = |start: &str| option(start).into_encoded_bytes();
+        let expected = [
+            of_path("file="),
+            b",isa=thumb,entry=0x240".to_vec(),
+            of_path(",out="),
+        ]
+        .concat();
+        assert_eq!(words, OsString::from_vec(expected));
     }
 
     #[test]

@@ -2,12 +2,16 @@
 //!
 //! With it, the last words of a core that fails say in which function that was.
 
+use std::error::Error;
 use std::fmt;
-use std::path::Path;
+use std::fs;
+use std::path::{Path, PathBuf};
 
 use addr2line::{Loader, demangle_auto};
+use object::{Object, ObjectSymbol, SymbolKind};
 use wire::FaultInfo;
 
+use super::elf::{ElfError, ElfFault};
 use crate::platform::workspace;
 
 /// How the last words of a core that panics begin; file and line follow.
@@ -32,26 +36,12 @@ impl Place {
     }
 
     fn in_tables(loader: &Loader, address: u64) -> Option<Self> {
-        let mut frames = loader.find_frames(address).ok()?;
-        let (mut functions, mut line) = (Vec::new(), None);
-        while let Ok(Some(frame)) = frames.next() {
-            // The first frame is the innermost; the lines of the others are where it was called.
-            if functions.is_empty() {
-                line = frame.location.and_then(|at| Some((at.file?, at.line?)));
-            }
-            let name = frame.function.as_ref().and_then(|name| name.demangle().ok());
-            functions.extend(name.map(|name| without_arguments(&name)));
-        }
-        // Assembly has symbols but no functions in the tables. Past the code, the last symbol would be found for anything.
-        let code = loader.get_section_range(b".text")?;
-        if functions.is_empty() && (code.begin..code.end).contains(&address) {
-            functions.extend(loader.find_symbol(address).map(str::to_owned));
-        }
-        let mut functions = functions.into_iter();
+        let mut frames = frames(loader, address).ok()?.into_iter();
+        let innermost = frames.next()?;
         Some(Self {
-            function: functions.next()?,
-            line: line.map(|(file, line)| format!("{}:{line}", shortened(file))),
-            inlined_into: functions.next_back(),
+            function: innermost.function,
+            line: innermost.line,
+            inlined_into: frames.next_back().map(|frame| frame.function),
         })
     }
 
@@ -66,6 +56,85 @@ impl Place {
         let (address, ..) = lines.find(|(_, _, at)| at.file.map(shortened).zip(at.line) == Some(named))?;
         Some((u32::try_from(address).ok()?, Self::in_tables(&loader, address)?))
     }
+}
+
+/// A function that an instruction is part of.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Frame {
+    /// Its name, without the arguments of generic functions.
+    pub function: String,
+    /// File and line: of the instruction's source in the innermost function, of the call in those around it.
+    pub line: Option<String>,
+}
+
+/// The line tables and symbols of an image, for many questions.
+pub struct Symbols {
+    loader: Loader,
+    path: PathBuf,
+}
+
+impl Symbols {
+    /// Those of the image `elf`.
+    pub fn of(elf: &Path) -> Result<Self, ElfError> {
+        let path = elf.to_owned();
+        match Loader::new(elf) {
+            Ok(loader) => Ok(Self { loader, path }),
+            Err(error) => Err(ElfFault::Lines(error.to_string()).of(elf)),
+        }
+    }
+
+    /// The functions that an instruction is part of, innermost first: the last is the image's, the others are inlined into it. None
+    /// where the image does not know the address.
+    pub fn frames(&self, address: u32) -> Result<Vec<Frame>, ElfError> {
+        let found = frames(&self.loader, address.into());
+        found.map_err(|error| ElfFault::Lines(error.to_string()).of(&self.path))
+    }
+}
+
+fn frames(loader: &Loader, address: u64) -> Result<Vec<Frame>, Box<dyn Error>> {
+    let mut tables = loader.find_frames(address)?;
+    let (mut found, mut unclaimed) = (Vec::new(), None);
+    while let Some(frame) = tables.next()? {
+        let line = frame.location.and_then(|at| Some((at.file?, at.line?)));
+        let line = line.map(|(file, line)| format!("{}:{line}", shortened(file)));
+        match frame.function.as_ref().and_then(|name| name.demangle().ok()) {
+            Some(name) => found.push(Frame {
+                function: without_arguments(&name),
+                line: unclaimed.take().or(line),
+            }),
+            None => unclaimed = unclaimed.or(line),
+        }
+    }
+    // Assembly has symbols but no functions in the tables. Past the code, the last symbol would be found for anything.
+    let code = loader.get_section_range(b".text");
+    if found.is_empty() && code.is_some_and(|code| (code.begin..code.end).contains(&address)) {
+        found.extend(loader.find_symbol(address).map(|symbol| Frame {
+            function: symbol.to_owned(),
+            line: unclaimed,
+        }));
+    }
+    Ok(found)
+}
+
+/// The address of the function that renders a unit, and is called once for each.
+pub fn unit_renderer(elf: &Path) -> Result<u32, ElfError> {
+    let found = || {
+        let bytes = fs::read(elf)?;
+        let file = object::File::parse(&bytes[..])?;
+        let functions = file.symbols().filter(|symbol| symbol.kind() == SymbolKind::Text);
+        let mut renderers = functions.filter(|symbol| symbol.name().is_ok_and(renders_units));
+        match (renderers.next(), renderers.next()) {
+            // Thumb's symbols are odd.
+            (Some(only), None) => Ok(only.address() as u32 & !1),
+            _ => Err(ElfFault::Without("one function that renders units")),
+        }
+    };
+    found().map_err(|fault: ElfFault| fault.of(elf))
+}
+
+fn renders_units(symbol: &str) -> bool {
+    let name = readable(symbol);
+    name.starts_with("<node::run::run") && name.ends_with(" as node::worker::Renderer>::render")
 }
 
 /// A core's last words, and the function in its image that they came from, where that can be found out.

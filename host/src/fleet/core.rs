@@ -22,6 +22,19 @@ pub struct Core {
     pub capture: Option<PathBuf>,
     /// The TCP port on which it waits for a debugger before its first instruction, if for any.
     pub debugger: Option<u16>,
+    /// What of its execution is recorded, if anything.
+    pub recorder: Option<Recorder>,
+}
+
+/// What a plugin of QEMU's records of a core's execution: all that runs within one function.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Recorder {
+    /// The plugin.
+    pub plugin: PathBuf,
+    /// The function's address.
+    pub entry: u32,
+    /// The recording, which is there when QEMU has ended by itself.
+    pub file: PathBuf,
 }
 
 impl Core {
@@ -35,6 +48,7 @@ impl Core {
             logs: false,
             capture: None,
             debugger: None,
+            recorder: None,
         }
     }
 
@@ -46,6 +60,9 @@ impl Core {
         }
         if let Some(first) = &self.capture {
             words.extend(board::capture_to(&capture_of(first, restarts)));
+        }
+        if let Some(Recorder { plugin, entry, file }) = &self.recorder {
+            words.extend(board::record_flow(plugin, self.board.isa(), *entry, file));
         }
         words.extend(self.debugger.into_iter().flat_map(board::wait_for_debugger));
         words

@@ -8,7 +8,7 @@ mod native;
 mod qemu;
 pub mod session;
 
-pub use self::core::{Core, capture_of};
+pub use self::core::{Core, Recorder, capture_of};
 pub use elsewhere::Elsewhere;
 pub use native::NativeFleet;
 pub(crate) use qemu::bound_to_this_process;

@@ -5,6 +5,7 @@ use std::io::{self, Read, Seek, SeekFrom};
 use std::os::unix::process::{CommandExt, ExitStatusExt};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Output, Stdio};
+use std::thread;
 use std::time::{Duration, Instant};
 
 use super::core::Core;
@@ -17,6 +18,8 @@ use crate::platform::setup;
 
 /// Time between two looks at the processes' memory, which nobody can ask for once they have ended.
 const MEASURE_EVERY: Duration = Duration::from_millis(250);
+/// Time between two looks whether a process that is to end has done so.
+const LOOK_EVERY: Duration = Duration::from_millis(5);
 /// The exit codes of a core that has run into a fault of its program: a panic, and an exception of the processor. They are
 /// `runtime::ExitCode`'s; what it says with another code it has thought about, and would say again.
 const FAILED: [i32; 2] = [3, 4];
@@ -133,6 +136,21 @@ impl QemuFleet {
         self
     }
 
+    /// Waits for the ends of cores that have been told to stop, and says how the first ended that did not end well.
+    pub fn await_ends(&mut self, within: Duration) -> Result<(), String> {
+        let start = Instant::now();
+        let running = |fleet: &Self| fleet.guests.iter().any(|guest| guest.ended.is_none());
+        while running(self) && start.elapsed() < within {
+            self.newly_ended();
+            thread::sleep(LOOK_EVERY);
+        }
+        let ill = |guest: &&Guest| !guest.ended.is_some_and(|status| status.success());
+        match self.guests.iter().find(ill) {
+            Some(guest) => Err(self.how_ended(guest.core.number)),
+            None => Ok(()),
+        }
+    }
+
     fn guest(&self, core: u16) -> Option<&Guest> {
         self.guests.iter().find(|guest| guest.core.number == core)
     }
@@ -171,8 +189,10 @@ impl QemuFleet {
 
 impl Fleet for QemuFleet {
     fn policy(&self) -> Policy {
+        let recorded = self.guests.iter().any(|guest| guest.core.recorder.is_some());
         Policy {
-            restarts: if self.debugged { 0 } else { RESTARTS },
+            // A recording is of one life.
+            restarts: if self.debugged || recorded { 0 } else { RESTARTS },
             sees_ends: true,
             patience: if self.debugged {
                 Patience::Endless

@@ -7,6 +7,7 @@
 mod debug;
 mod folder;
 pub mod options;
+mod record;
 pub mod report;
 mod results;
 mod trace;
@@ -42,6 +43,7 @@ use options::{Backend, PictureOptions, Reference, RenderOptions};
 use report::Report;
 
 pub use debug::{DebugOptions, debug};
+pub use record::{RecordError, Recorded, record};
 pub use trace::{TraceOptions, Traced, trace};
 
 /// Why there is no complete picture.
