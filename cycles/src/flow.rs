@@ -23,6 +23,25 @@ pub struct Instruction {
 }
 
 impl Instruction {
+    /// The instruction whose bytes are the first of these, as they lie in memory; none where they are too few.
+    pub fn read(isa: Isa, address: u32, bytes: &[u8]) -> Option<Self> {
+        let half = |place: usize| {
+            let bytes = bytes.get(place..)?.first_chunk()?;
+            Some(u32::from(u16::from_le_bytes(*bytes)))
+        };
+        let first = half(0)?;
+        let (encoding, bytes) = match isa {
+            Isa::Arm => (half(2)? << 16 | first, 4),
+            Isa::Thumb if first >> 11 >= 0x1d => (first << 16 | half(2)?, 4),
+            Isa::Thumb => (first, 2),
+        };
+        Some(Self {
+            address,
+            encoding,
+            bytes,
+        })
+    }
+
     /// The address after it.
     pub fn end(&self) -> u32 {
         self.address.wrapping_add(self.bytes.into())
@@ -122,4 +141,11 @@ impl Flow {
 pub struct Recording {
     /// The flows.
     pub segments: Vec<Flow>,
+}
+
+impl Recording {
+    /// How often the recorded functions were entered.
+    pub fn calls(&self) -> u64 {
+        self.segments.iter().map(Flow::calls).sum()
+    }
 }

@@ -28,6 +28,7 @@ pub mod class;
 mod cortex_m3;
 pub mod file;
 pub mod flow;
+pub mod options;
 mod pipeline;
 pub mod price;
 pub mod recorder;

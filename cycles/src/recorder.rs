@@ -66,6 +66,11 @@ impl Recorder {
         }
     }
 
+    /// The instruction set.
+    pub fn isa(&self) -> Isa {
+        self.wanted.isa
+    }
+
     /// The number of the block of these instructions: the same whenever they are translated again.
     pub fn block(&mut self, instructions: Vec<Instruction>) -> usize {
         if let Some(&number) = self.known.get(&instructions) {

@@ -165,8 +165,6 @@ pub fn program(name: &str) -> PathBuf {
             "xtask",
             "--package",
             "host",
-            "--package",
-            "cycles-plugin",
         ]);
         let status = cargo.current_dir(repository(".")).status().expect("cargo starts");
         assert!(status.success(), "the programs do not build");

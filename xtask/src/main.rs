@@ -14,8 +14,6 @@ use std::process::{Command, ExitCode, ExitStatus, Stdio};
 
 /// The package of the commands, and its program.
 const COMMANDS: &str = "commands";
-/// The plugin for QEMU, which commands look for beside themselves.
-const PLUGIN: &str = "cycles-plugin";
 
 fn main() -> ExitCode {
     match start() {
@@ -59,7 +57,7 @@ fn build(folder: &Path) -> Result<ExitStatus, Box<dyn Error>> {
     };
     let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let mut command = Command::new(&cargo);
-    command.args(["build", "--package", COMMANDS, "--package", PLUGIN, "--profile"]);
+    command.args(["build", "--package", COMMANDS, "--profile"]);
     command.arg(profile);
     if let Some(package) = env::var_os("CARGO_MANIFEST_DIR") {
         command

@@ -5,14 +5,15 @@
 
 mod api;
 
-use std::ffi::{CStr, c_char, c_int, c_uint, c_void};
+use std::ffi::{CStr, OsStr, OsString, c_char, c_int, c_uint, c_void};
 use std::io::Write;
+use std::os::unix::ffi::OsStrExt;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicPtr, Ordering};
 
-use cycles::file;
 use cycles::flow::{Instruction, Isa};
-use cycles::recorder::{Recorder, Wanted};
+use cycles::recorder::Recorder;
+use cycles::{file, options};
 
 /// The version of QEMU's interface that this was made for; QEMU looks for it.
 #[unsafe(no_mangle)]
@@ -62,57 +63,23 @@ pub unsafe extern "C" fn qemu_plugin_install(
 
 /// # Safety
 /// `words` points to so many strings.
-unsafe fn arguments(count: c_int, words: *const *const c_char) -> Vec<String> {
+unsafe fn arguments(count: c_int, words: *const *const c_char) -> Vec<OsString> {
     let count = usize::try_from(count).unwrap_or_default();
     // SAFETY: the caller's promise.
     let word = |place| unsafe { CStr::from_ptr(*words.add(place)) };
-    (0..count)
-        .map(|place| word(place).to_string_lossy().into_owned())
-        .collect()
+    let words = (0..count).map(|place| OsStr::from_bytes(word(place).to_bytes()).to_owned());
+    words.collect()
 }
 
-fn set_up(info: &api::Info, words: &[String]) -> Result<Plugin, String> {
+fn set_up(info: &api::Info, words: &[OsString]) -> Result<Plugin, String> {
     if !info.system_emulation || info.processors != 1 {
         return Err("it records a whole machine with one processor".to_owned());
     }
-    let mut wanted = Wanted {
-        isa: Isa::Arm,
-        entries: Vec::new(),
-        each: false,
-        code_end: 0,
-    };
-    let mut file = None;
-    for word in words {
-        let (key, value) = word.split_once('=').unwrap_or((word, ""));
-        match (key, value) {
-            ("isa", "arm") => wanted.isa = Isa::Arm,
-            ("isa", "thumb") => wanted.isa = Isa::Thumb,
-            ("each", _) => wanted.each = value == "on",
-            ("code_end", _) => wanted.code_end = address(value)?,
-            ("out", _) => file = Some(PathBuf::from(value)),
-            ("entry", _) => wanted.entries.push(address(value)?),
-            _ => {
-                return Err(format!(
-                    "`{word}` is none of its arguments (isa, entry, out, each, code_end)"
-                ));
-            }
-        }
-    }
-    let file = file.ok_or("it needs `out=PATH`")?;
-    if wanted.entries.is_empty() {
-        return Err("it needs `entry=ADDRESS`, once or more".to_owned());
-    }
+    let (wanted, file) = options::parse(words)?;
     Ok(Plugin {
         recorder: Recorder::new(wanted),
         file,
     })
-}
-
-fn address(text: &str) -> Result<u32, String> {
-    let digits = text.strip_prefix("0x").unwrap_or(text);
-    // A Thumb function's symbol has its lowest bit set; its instructions lie at even addresses.
-    let parsed = u32::from_str_radix(digits, 16).map(|address| address & !1);
-    parsed.map_err(|_| format!("`{text}` is no hexadecimal address"))
 }
 
 fn complain(error: &str) {
@@ -136,12 +103,19 @@ extern "C" fn translated(_id: api::Id, block: *mut api::Block) {
         let handles: Vec<_> = (0..count)
             .map(|place| api::qemu_plugin_tb_get_insn(block, place))
             .collect();
-        let instructions = handles.iter().map(|&handle| instruction(handle)).collect();
         let recorder = &mut plugin().recorder;
+        let isa = recorder.isa();
+        let instructions = handles.iter().map_while(|&handle| instruction(isa, handle));
+        let instructions = instructions.collect();
         let number = recorder.block(instructions);
         api::qemu_plugin_register_vcpu_tb_exec_cb(block, executed, api::NO_REGISTERS, data(number));
         let watched = recorder.watched(number);
-        for (place, &handle) in handles.iter().enumerate().filter(|&(place, _)| watched[place]) {
+        for (place, (&handle, _)) in handles
+            .iter()
+            .zip(watched)
+            .enumerate()
+            .filter(|(_, (_, watched))| *watched)
+        {
             let data = data(number * BLOCK_LENGTH + place);
             api::qemu_plugin_register_vcpu_mem_cb(
                 handle,
@@ -159,10 +133,12 @@ fn data(number: usize) -> *mut c_void {
     std::ptr::without_provenance_mut(number)
 }
 
+/// Nothing for what is no instruction, whose execution would be an exception.
+///
 /// # Safety
 /// `handle` is an instruction of the block in translation.
-unsafe fn instruction(handle: *const api::Instruction) -> Instruction {
-    // SAFETY: the caller's promise; the data are as long as QEMU says, and were copied before the call ends.
+unsafe fn instruction(isa: Isa, handle: *const api::Instruction) -> Option<Instruction> {
+    // SAFETY: the caller's promise; the data are as long as QEMU says, and are read before the call ends.
     let (address, bytes) = unsafe {
         let data = api::qemu_plugin_insn_data(handle).cast::<u8>();
         let length = api::qemu_plugin_insn_size(handle);
@@ -171,16 +147,8 @@ unsafe fn instruction(handle: *const api::Instruction) -> Instruction {
             std::slice::from_raw_parts(data, length),
         )
     };
-    let encoding = match *bytes {
-        [a, b] => u16::from_le_bytes([a, b]).into(),
-        [a, b, c, d] => u32::from_le_bytes([a, b, c, d]),
-        _ => 0,
-    };
-    Instruction {
-        address: address as u32,
-        encoding,
-        bytes: bytes.len() as u8,
-    }
+    // At the end of a page QEMU looks further ahead than the instruction is long.
+    Instruction::read(isa, address as u32, bytes)
 }
 
 extern "C" fn executed(_processor: c_uint, data: *mut c_void) {

@@ -51,8 +51,12 @@ pub struct Row {
     pub itcm_bytes: Option<u64>,
     /// Instructions.
     pub instructions_per_sample: Option<f64>,
-    /// Cycles; nobody has counted them yet.
+    /// Cycles of the board's processor.
     pub cycles_per_sample: Option<f64>,
+    /// The least that they may be, by what the model does not see.
+    pub cycles_per_sample_low: Option<f64>,
+    /// The most.
+    pub cycles_per_sample_high: Option<f64>,
     /// Rays.
     pub rays_per_sample: Option<f64>,
     /// (mean - reference mean) / reference mean, noise and all.
@@ -141,6 +145,7 @@ impl Series {
             boards: vec![board],
             backend: Backend::Qemu,
             log: None,
+            cycles: true,
             port: None,
             no_install: self.no_install,
         }
@@ -158,6 +163,8 @@ impl Row {
             itcm_bytes: report.images.first().map(|image| image.size.itcm_bytes),
             instructions_per_sample: report.cost.instructions_per_sample,
             cycles_per_sample: report.cost.cycles_per_sample,
+            cycles_per_sample_low: report.cost.cycles_per_sample_low,
+            cycles_per_sample_high: report.cost.cycles_per_sample_high,
             rays_per_sample: report.cost.rays_per_sample,
             bias: report.error.bias,
             bias_standard_error: report.error.bias_standard_error,
@@ -170,11 +177,40 @@ impl Row {
     }
 }
 
+impl Row {
+    /// Its cycles, and by how much they may be more or less where the model leaves that open.
+    fn cycles(&self) -> String {
+        let Some(cycles) = self.cycles_per_sample else {
+            return "-".to_owned();
+        };
+        let bounds = [self.cycles_per_sample_low, self.cycles_per_sample_high];
+        let most = bounds
+            .into_iter()
+            .flatten()
+            .map(|bound| (bound / cycles - 1.0).abs())
+            .fold(0.0, f64::max);
+        if most < 5e-4 {
+            format!("{cycles:.1}")
+        } else {
+            format!("{cycles:.0} ± {:.1} %", 100.0 * most)
+        }
+    }
+}
+
 /// The list for people, boards side by side, what is behind a `±` being one standard error at most.
 pub fn table(rows: &[Row]) -> String {
     let mut lines = vec![format!(
-        "{:8} {:10} {:12} {:>8} {:>15} {:>8} {:>18} {:>18} {:>9}",
-        "profile", "paths", "board", "code", "instructions", "rays", "bias", "arithmetic bias", "rmse <="
+        "{:8} {:10} {:12} {:>8} {:>12} {:>17} {:>6} {:>18} {:>18} {:>9}",
+        "profile",
+        "paths",
+        "board",
+        "code",
+        "instructions",
+        "cycles",
+        "rays",
+        "bias",
+        "arithmetic bias",
+        "rmse <="
     )];
     let percent = |share: Option<f64>, error: Option<f64>| match (share, error) {
         (Some(share), Some(error)) => format!("{:+.3} ± {:.3} %", 100.0 * share, 100.0 * error),
@@ -185,12 +221,13 @@ pub fn table(rows: &[Row]) -> String {
         |value: Option<f64>, digits| value.map_or("-".to_owned(), |value| format!("{value:.digits$}"));
     lines.extend(rows.iter().map(|row| {
         format!(
-            "{:8} {:10} {:12} {:>8} {:>15} {:>8} {:>18} {:>18} {:>9}",
+            "{:8} {:10} {:12} {:>8} {:>12} {:>17} {:>6} {:>18} {:>18} {:>9}",
             row.profile,
             row.termination,
             row.board,
             row.itcm_bytes.map_or("-".to_owned(), |bytes| bytes.to_string()),
             figure(row.instructions_per_sample, 1),
+            row.cycles(),
             figure(row.rays_per_sample, 2),
             percent(row.bias, row.bias_standard_error),
             percent(row.lockstep_bias, row.lockstep_bias_standard_error),

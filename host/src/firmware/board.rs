@@ -170,25 +170,13 @@ pub fn capture_to(file: &Path) -> [OsString; 2] {
     ["-object".into(), with_path(&dump, file)]
 }
 
-/// The words that make QEMU load the plugin `cycles-plugin`, which writes a recording of what runs within the function at `entry`.
-pub fn record_flow(plugin: &Path, isa: Isa, entry: u32, file: &Path) -> [OsString; 2] {
-    let isa = match isa {
-        Isa::Arm => "arm",
-        Isa::Thumb => "thumb",
-    };
-    let mut words = with_path("file=", plugin);
-    words.push(format!(",isa={isa},entry={entry:#x}"));
-    words.push(with_path(",out=", file));
-    ["-plugin".into(), words]
-}
-
 /// The words that make QEMU wait for a debugger on a TCP port of this host before the first instruction.
 pub fn wait_for_debugger(port: u16) -> [OsString; 3] {
     ["-S".into(), "-gdb".into(), format!("tcp:127.0.0.1:{port}").into()]
 }
 
 /// One of QEMU's options with a path as its last value, which would end at a comma unless that is doubled. Any other byte is itself.
-fn with_path(option: &str, path: &Path) -> OsString {
+pub(super) fn with_path(option: &str, path: &Path) -> OsString {
     let mut bytes = option.as_bytes().to_vec();
     for &byte in path.as_os_str().as_bytes() {
         bytes.push(byte);
@@ -229,15 +217,6 @@ mod tests {
         assert!(words.contains(&console), "{words:?}");
         let dump = option("filter-dump,id=capture,netdev=net,file=");
         assert_eq!(capture_to(path)[1], dump);
-        let [_, words] = record_flow(path, Isa::Thumb, 0x240, path);
-        let of_path = |start: &str| option(start).into_encoded_bytes();
-        let expected = [
-            of_path("file="),
-            b",isa=thumb,entry=0x240".to_vec(),
-            of_path(",out="),
-        ]
-        .concat();
-        assert_eq!(words, OsString::from_vec(expected));
     }
 
     #[test]

@@ -11,6 +11,7 @@ mod elf;
 pub mod footprint;
 pub mod growth;
 pub mod log;
+pub mod plugin;
 mod recipe;
 mod share;
 pub mod symbols;

@@ -118,23 +118,29 @@ fn frames(loader: &Loader, address: u64) -> Result<Vec<Frame>, Box<dyn Error>> {
 
 /// The address of the function that renders a unit, and is called once for each.
 pub fn unit_renderer(elf: &Path) -> Result<u32, ElfError> {
+    let renderers = functions(elf, " as node::worker::Renderer>::render")?;
+    match renderers[..] {
+        [only] => Ok(only),
+        _ => Err(ElfFault::Without("one function that renders units").of(elf)),
+    }
+}
+
+/// The addresses of the functions whose names end so; none where there is no such.
+pub fn functions(elf: &Path, ending: &str) -> Result<Vec<u32>, ElfError> {
     let found = || {
         let bytes = fs::read(elf)?;
         let file = object::File::parse(&bytes[..])?;
+        let named = |symbol: &object::Symbol<'_, '_>| {
+            symbol.name().is_ok_and(|name| readable(name).ends_with(ending))
+        };
         let functions = file.symbols().filter(|symbol| symbol.kind() == SymbolKind::Text);
-        let mut renderers = functions.filter(|symbol| symbol.name().is_ok_and(renders_units));
-        match (renderers.next(), renderers.next()) {
-            // Thumb's symbols are odd.
-            (Some(only), None) => Ok(only.address() as u32 & !1),
-            _ => Err(ElfFault::Without("one function that renders units")),
-        }
+        // Thumb's symbols are odd.
+        Ok(functions
+            .filter(named)
+            .map(|symbol| symbol.address() as u32 & !1)
+            .collect())
     };
     found().map_err(|fault: ElfFault| fault.of(elf))
-}
-
-fn renders_units(symbol: &str) -> bool {
-    let name = readable(symbol);
-    name.starts_with("<node::run::run") && name.ends_with(" as node::worker::Renderer>::render")
 }
 
 /// A core's last words, and the function in its image that they came from, where that can be found out.

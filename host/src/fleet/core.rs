@@ -4,6 +4,7 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use crate::firmware::board::{self, Board};
+use crate::firmware::plugin::Recorder;
 
 /// A core to be started.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -24,17 +25,6 @@ pub struct Core {
     pub debugger: Option<u16>,
     /// What of its execution is recorded, if anything.
     pub recorder: Option<Recorder>,
-}
-
-/// What a plugin of QEMU's records of a core's execution: all that runs within one function.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Recorder {
-    /// The plugin.
-    pub plugin: PathBuf,
-    /// The function's address.
-    pub entry: u32,
-    /// The recording, which is there when QEMU has ended by itself.
-    pub file: PathBuf,
 }
 
 impl Core {
@@ -61,9 +51,11 @@ impl Core {
         if let Some(first) = &self.capture {
             words.extend(board::capture_to(&capture_of(first, restarts)));
         }
-        if let Some(Recorder { plugin, entry, file }) = &self.recorder {
-            words.extend(board::record_flow(plugin, self.board.isa(), *entry, file));
-        }
+        words.extend(
+            self.recorder
+                .iter()
+                .flat_map(|recorder| recorder.words(self.board)),
+        );
         words.extend(self.debugger.into_iter().flat_map(board::wait_for_debugger));
         words
     }

@@ -8,13 +8,13 @@ mod native;
 mod qemu;
 pub mod session;
 
-pub use self::core::{Core, Recorder, capture_of};
+pub use self::core::{Core, capture_of};
 pub use elsewhere::Elsewhere;
 pub use native::NativeFleet;
 pub(crate) use qemu::bound_to_this_process;
 #[cfg(test)]
 pub(crate) use qemu::tests::{cores, fake_qemu};
-pub use qemu::{QemuFleet, run_to_end, run_with_peer};
+pub use qemu::{QemuFleet, run_recorded, run_to_end, run_with_peer};
 
 use std::io;
 use std::path::Path;

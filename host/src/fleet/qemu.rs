@@ -12,6 +12,7 @@ use super::core::Core;
 use super::log::FleetLog;
 use super::{Fleet, FleetError, LAST_LINES, Patience, Policy, RESTARTS, RUNNING, unusable};
 use crate::firmware::board::Board;
+use crate::firmware::plugin::Recorder;
 use crate::platform::interrupt;
 use crate::platform::memory;
 use crate::platform::setup;
@@ -20,6 +21,8 @@ use crate::platform::setup;
 const MEASURE_EVERY: Duration = Duration::from_millis(250);
 /// Time between two looks whether a process that is to end has done so.
 const LOOK_EVERY: Duration = Duration::from_millis(5);
+/// How long cores that have been told to stop may take until their recordings are written.
+const WRITTEN_WITHIN: Duration = Duration::from_secs(30);
 /// The exit codes of a core that has run into a fault of its program: a panic, and an exception of the processor. They are
 /// `runtime::ExitCode`'s; what it says with another code it has thought about, and would say again.
 const FAILED: [i32; 2] = [3, 4];
@@ -34,6 +37,15 @@ const PROCESSOR_SECONDS: u64 = 300;
 pub fn run_to_end(qemu: &Path, board: Board, elf: &Path) -> io::Result<Output> {
     let mut command = bound_to_this_process(qemu);
     interrupt::output_within(PROCESSOR_SECONDS, command.args(board.command_line(elf, None)))
+}
+
+/// As [`run_to_end`], and records its flow of execution.
+pub fn run_recorded(qemu: &Path, board: Board, elf: &Path, recorder: &Recorder) -> io::Result<Output> {
+    let mut command = bound_to_this_process(qemu);
+    command
+        .args(board.command_line(elf, None))
+        .args(recorder.words(board));
+    interrupt::output_within(PROCESSOR_SECONDS, &mut command)
 }
 
 /// As [`run_to_end`], with a peer instead of a network: see [`Board::command_line_with_peer`].
@@ -151,6 +163,10 @@ impl QemuFleet {
         }
     }
 
+    fn is_recorded(&self) -> bool {
+        self.guests.iter().any(|guest| guest.core.recorder.is_some())
+    }
+
     fn guest(&self, core: u16) -> Option<&Guest> {
         self.guests.iter().find(|guest| guest.core.number == core)
     }
@@ -189,10 +205,13 @@ impl QemuFleet {
 
 impl Fleet for QemuFleet {
     fn policy(&self) -> Policy {
-        let recorded = self.guests.iter().any(|guest| guest.core.recorder.is_some());
         Policy {
             // A recording is of one life.
-            restarts: if self.debugged || recorded { 0 } else { RESTARTS },
+            restarts: if self.debugged || self.is_recorded() {
+                0
+            } else {
+                RESTARTS
+            },
             sees_ends: true,
             patience: if self.debugged {
                 Patience::Endless
@@ -273,6 +292,10 @@ impl Fleet for QemuFleet {
     }
 
     fn end(&mut self) -> Vec<String> {
+        if self.is_recorded() {
+            // Their recordings are written when they end by themselves. Of one that does not, there is none, which tells.
+            let _how = self.await_ends(WRITTEN_WITHIN);
+        }
         self.kill();
         self.log.as_mut().map(FleetLog::end).unwrap_or_default()
     }

@@ -29,7 +29,7 @@ const PICTURE: &str = "image.exr";
 /// Folders in which a fleet's files are, and the boot blocks of cores from elsewhere.
 const OF_CORES: [&str; 2] = ["cores", "boot"];
 /// Endings of the files of a core.
-const OF_CORE: [&str; 5] = ["boot", "log", "defmt", "pid", "pcap"];
+const OF_CORE: [&str; 6] = ["boot", "log", "defmt", "pid", "pcap", "flow"];
 
 /// A folder that no other render writes to.
 #[derive(Debug)]

@@ -4,7 +4,9 @@
 //! results, the reference file, the port, the programs that are needed. Then the image is built, the fleet started
 //! and the picture collected; then it is judged and written.
 
+mod cycles;
 mod debug;
+mod error;
 mod folder;
 pub mod options;
 mod record;
@@ -17,135 +19,36 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
+use ::cycles::flow::Recording;
 use tracer::scene::Capability;
 use tracer::unit::{Plan, Termination};
 use wire::Name;
 
-use crate::collector::{self, BindError, CollectError, Collection, End, Progress};
+use crate::collector::{self, CollectError, Collection, End, Progress};
 use crate::firmware::Level;
 use crate::firmware::board::Board;
-use crate::firmware::{self, FirmwareError, Image, Recipe};
-use crate::fleet::capture::CaptureError;
+use crate::firmware::{self, Image, Recipe};
 use crate::fleet::session::{Route, Session, boot_block_len};
-use crate::fleet::{Core, Elsewhere, Fleet, FleetError, NativeFleet, QemuFleet};
-use crate::image::openexr::{self, ReadError};
+use crate::fleet::{Core, Elsewhere, Fleet, NativeFleet, QemuFleet};
+use crate::image::openexr;
 use crate::image::picture::Estimate;
 use crate::oracle::compare::CompareError;
 use crate::platform::console::{note, patiently};
-use crate::platform::file::WriteError;
 use crate::platform::interrupt;
 use crate::platform::memory;
-use crate::platform::setup::{self, Install, SetupError, Toolchain, Tools, Wanted};
-use crate::platform::workspace::{self, NoWorkspace};
-use crate::scene::{CompiledScene, Scene, SceneError, compile, samples_per_unit};
+use crate::platform::setup::{self, Install, Toolchain, Tools, Wanted};
+use crate::platform::workspace;
+use crate::scene::{CompiledScene, Scene, compile, samples_per_unit};
+use cycles::Meter;
 use folder::Folder;
 use options::{Backend, PictureOptions, Reference, RenderOptions};
 use report::Report;
 
+pub use cycles::CyclesError;
 pub use debug::{DebugOptions, debug};
+pub use error::RenderError;
 pub use record::{RecordError, Recorded, record};
 pub use trace::{TraceOptions, Traced, trace};
-
-/// Why there is no complete picture.
-#[derive(Debug, thiserror::Error)]
-pub enum RenderError {
-    /// There is no default scene, or no place for the results.
-    #[error("a scene and a folder (with --out) must be named here")]
-    NoWorkspace(#[from] NoWorkspace),
-    /// The scene is unusable.
-    #[error(transparent)]
-    Scene(#[from] SceneError),
-    /// The folder for the results is.
-    #[error("cannot write to the folder {} (choose another with --out)", path.display())]
-    Out {
-        /// The folder.
-        path: PathBuf,
-        /// What the system said.
-        #[source]
-        cause: std::io::Error,
-    },
-    /// Another render has it.
-    #[error(
-        "another render is writing its results to {}: wait until it has ended, or choose another folder with --out", .0.display()
-    )]
-    Busy(PathBuf),
-    /// The folder did not take the results.
-    #[error("{why}\nthe results are in {} instead", folder.display())]
-    Elsewhere {
-        /// Why.
-        why: String,
-        /// Where they are.
-        folder: PathBuf,
-    },
-    /// The picture has more units than there are ids.
-    #[error("the picture has more than 2^32 work units: choose a smaller --size or --spp")]
-    TooManyUnits,
-    /// The scene does not fit a core.
-    #[error("{0}")]
-    TooLong(wire::boot::TooLong),
-    /// The reference file is unusable.
-    #[error("the reference is of no use")]
-    Reference(#[from] ReadError),
-    /// The two cannot be compared.
-    #[error(transparent)]
-    Compare(#[from] CompareError),
-    /// The port is.
-    #[error(transparent)]
-    Bind(#[from] BindError),
-    /// A program is missing.
-    #[error(transparent)]
-    Setup(#[from] SetupError),
-    /// The image could not be built.
-    #[error(transparent)]
-    Firmware(#[from] FirmwareError),
-    /// The cores could not be started.
-    #[error(transparent)]
-    Fleet(#[from] FleetError),
-    /// The collector failed.
-    #[error(transparent)]
-    Collect(#[from] CollectError),
-    /// A result could not be written.
-    #[error(transparent)]
-    Write(#[from] WriteError),
-    /// A core that the session does not have.
-    #[error("there is no core {core}: {cores} cores are numbered 0 to {last}; choose another --core, or more --cores",
-        last = cores - 1)]
-    NoSuchCore {
-        /// The core asked for.
-        core: u16,
-        /// The session's cores.
-        cores: u16,
-    },
-    /// Threads have no network card whose packets could be recorded.
-    #[error("a core's packets can only be recorded in QEMU: leave out --backend native")]
-    NoNetwork,
-    /// Threads have no log.
-    #[error("cores keep a log only in QEMU: leave out --log, or --backend native")]
-    NoLog,
-    /// The recorded packets could not be read.
-    #[error(transparent)]
-    Capture(#[from] CaptureError),
-    /// The debugger could not be run.
-    #[error("cannot run {}", program.display())]
-    Debugger {
-        /// The program.
-        program: PathBuf,
-        /// What the system said.
-        #[source]
-        cause: std::io::Error,
-    },
-    /// The cores are gone.
-    #[error("{why}\n{kept}")]
-    Deserted {
-        /// Why, naming the cores.
-        why: String,
-        /// Where the partial picture is.
-        kept: String,
-    },
-    /// The user wanted it to end.
-    #[error("interrupted; {0}")]
-    Interrupted(String),
-}
 
 /// A job whose flags, scene and folder are sound.
 #[derive(Debug)]
@@ -177,6 +80,8 @@ struct Origin {
     counts_instructions: bool,
     /// What they logged.
     log: Option<PathBuf>,
+    /// What records their flows.
+    meter: Option<Meter>,
 }
 
 impl Origin {
@@ -265,6 +170,7 @@ impl Job {
             images: Vec::new(),
             counts_instructions: false,
             log: None,
+            meter: None,
         };
         self.collect(
             session,
@@ -305,7 +211,15 @@ impl Job {
         for warning in fleet.end() {
             note(&warning);
         }
-        self.conclude(&collection, origin, wall, memory)
+        // A picture without its cycles is a picture.
+        let recordings = origin
+            .meter
+            .as_ref()
+            .map_or(Ok(Vec::new()), |meter| meter.read(&*fleet));
+        let known = recordings.as_ref().map_or(&[][..], Vec::as_slice);
+        let finished = self.conclude(&collection, origin, wall, memory, known)?;
+        recordings?;
+        Ok(finished)
     }
 
     /// Judges and writes what was collected.
@@ -315,6 +229,7 @@ impl Job {
         origin: Origin,
         wall: Duration,
         memory: Option<u64>,
+        recordings: &[Recording],
     ) -> Result<Finished, RenderError> {
         let results = results::Results {
             job: self,
@@ -322,6 +237,7 @@ impl Job {
             origin,
             wall,
             memory,
+            recordings,
         };
         match &collection.end {
             End::Complete => {
@@ -367,6 +283,9 @@ impl Job {
         if options.backend == Backend::Native && options.log.is_some() {
             return Err(RenderError::NoLog);
         }
+        if options.backend == Backend::Native && options.cycles {
+            return Err(RenderError::NoCycles);
+        }
         let socket = collector::bind(Ipv4Addr::LOCALHOST, options.port.unwrap_or(0))?;
         let port = socket.local_addr().map_err(CollectError::Socket)?.port();
         let session = self.session();
@@ -393,13 +312,19 @@ impl Job {
                 for core in &mut cores {
                     core.logs = options.log.is_some();
                 }
-                let fleet = QemuFleet::start(qemu, &cores, &self.out.path().join("cores"))?;
+                let folder = self.out.path().join("cores");
+                let meter = options
+                    .cycles
+                    .then(|| Meter::attach(qemu, &mut cores, &folder))
+                    .transpose()?;
+                let fleet = QemuFleet::start(qemu, &cores, &folder)?;
                 let origin = Origin {
                     backend: "qemu",
                     boards: options.boards.clone(),
                     images: images.iter().map(report::Image::from).collect(),
                     counts_instructions: true,
                     log: fleet.log().map(Path::to_owned),
+                    meter,
                 };
                 (Box::new(fleet) as Box<dyn Fleet>, origin)
             }
@@ -411,6 +336,7 @@ impl Job {
                     images: Vec::new(),
                     counts_instructions: false,
                     log: None,
+                    meter: None,
                 };
                 (Box::new(fleet) as Box<dyn Fleet>, origin)
             }

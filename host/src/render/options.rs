@@ -87,6 +87,9 @@ pub struct RenderOptions {
     /// Let the cores log what they do, into cores/fleet.log of the results [default: an image without a log]
     #[arg(long, value_name = "LEVEL", value_enum)]
     pub log: Option<Level>,
+    /// Count cycles, too: with a plugin in QEMU, which then takes about twice as long
+    #[arg(long)]
+    pub cycles: bool,
     /// UDP port of the collector [default: any free one]
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub port: Option<u16>,
@@ -332,6 +335,7 @@ mod tests {
             "x",
             "--port",
             "0",
+            "--cycles",
             "--no-install",
         ])
         .expect("these are all good");

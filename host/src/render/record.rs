@@ -3,27 +3,25 @@
 //! The core is one of a real session, and what it renders is counted and thrown away: the recording is what is kept.
 
 use std::net::{Ipv4Addr, UdpSocket};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
-use std::{env, io};
 
 use cycles::file::{self, FileError};
-use cycles::flow::{Flow, Recording};
+use cycles::flow::Recording;
 
 use super::options::{PictureOptions, Reference};
 use super::{Job, RenderError};
 use crate::collector::{self, CollectError, Collection, End, Progress};
 use crate::firmware::board::Board;
+use crate::firmware::plugin::{self, PluginError, Recorder};
 use crate::firmware::symbols::unit_renderer;
 use crate::firmware::{FirmwareError, Image};
 use crate::fleet::session::{Route, Session};
-use crate::fleet::{Core, Fleet, QemuFleet, Recorder};
+use crate::fleet::{Core, QemuFleet};
 use crate::platform::interrupt;
 use crate::platform::setup::{self, Install, SetupError, Wanted};
 
-/// The plugin, which lies beside the program that uses it.
-const PLUGIN: &str = "libcycles_plugin.so";
 /// How long a core that has been told to stop may take until its recording is written.
 const END_WITHIN: Duration = Duration::from_secs(30);
 
@@ -33,18 +31,9 @@ pub enum RecordError {
     /// The render failed.
     #[error(transparent)]
     Render(#[from] RenderError),
-    /// The plugin has not been built.
-    #[error("the plugin {} is not there: start this by `cargo xtask`, which builds it", .0.display())]
-    NoPlugin(PathBuf),
-    /// This program does not know where it lies.
-    #[error("cannot find out where this program lies, to look for the plugin beside it")]
-    NoPlace(#[source] io::Error),
-    /// The emulator has no plugins, or others.
-    #[error(
-        "this QEMU does not take the plugin that records what a core executes, made for version 1 of QEMU's plugin interface as \
-         in Debian 12's qemu-system-arm 7.2; it said: {0}"
-    )]
-    Refused(String),
+    /// There is nothing to record with.
+    #[error(transparent)]
+    Plugin(#[from] PluginError),
     /// The core ended too early.
     #[error("the core ended while it was recorded, so nothing is said of what it cost: {0}")]
     Died(String),
@@ -86,7 +75,6 @@ pub fn record(
     install: Install,
     interrupted: &AtomicBool,
 ) -> Result<Recorded, RecordError> {
-    let plugin = plugin()?;
     let job = Job::new(&PictureOptions {
         cores: 1,
         reference: Some(Reference::None),
@@ -102,6 +90,7 @@ pub fn record(
         let missing = SetupError::StillMissing("QEMU or a compiler".to_owned());
         return Err(RenderError::from(missing).into());
     };
+    let plugin = plugin::ready(qemu)?;
     let Image { elf, .. } = job.image(toolchain, board, None)?;
     let entry = unit_renderer(&elf).map_err(|error| RenderError::from(FirmwareError::from(error)))?;
     let socket = collector::bind(Ipv4Addr::LOCALHOST, 0).map_err(RenderError::from)?;
@@ -116,7 +105,8 @@ pub fn record(
     let core = Core {
         recorder: Some(Recorder {
             plugin,
-            entry,
+            entries: vec![entry],
+            each: false,
             file: recording.clone(),
         }),
         ..Core::new(0, board, &elf, boot_block)
@@ -126,7 +116,7 @@ pub fn record(
     let fleet = QemuFleet::start(qemu, &[core], &job.out().join("cores")).map_err(RenderError::from)?;
     let collection = collect(&session, &socket, fleet, interrupted)?;
     let recording = file::read(&recording)?;
-    let (found, expected) = (calls(&recording), session.plan.units().unwrap_or_default().into());
+    let (found, expected) = (recording.calls(), session.plan.units().unwrap_or_default().into());
     if found != expected {
         return Err(RecordError::Calls { found, expected });
     }
@@ -158,32 +148,6 @@ fn collect(
             Err(how) => Err(RecordError::Died(how)),
         },
         End::Interrupted => Err(RenderError::Interrupted("nothing was kept".to_owned()).into()),
-        End::Deserted(why) => {
-            let refusal = fleet
-                .last_output(0)
-                .into_iter()
-                .find(|line| line.contains("plugin"));
-            Err(refusal.map_or_else(|| RecordError::Died(why.clone()), RecordError::Refused))
-        }
+        End::Deserted(why) => Err(RecordError::Died(why.clone())),
     }
-}
-
-/// Where the plugin is.
-fn plugin() -> Result<PathBuf, RecordError> {
-    let program = env::current_exe().map_err(RecordError::NoPlace)?;
-    let plugin = program.parent().unwrap_or(Path::new("/")).join(PLUGIN);
-    if plugin.is_file() {
-        Ok(plugin)
-    } else {
-        Err(RecordError::NoPlugin(plugin))
-    }
-}
-
-/// How often the recorded function was called.
-fn calls(recording: &Recording) -> u64 {
-    let begins = |flow: &Flow| -> u64 {
-        let first = flow.edges.iter().filter(|edge| edge.from.is_none());
-        first.map(|edge| edge.count).sum()
-    };
-    recording.segments.iter().map(begins).sum()
 }

@@ -89,8 +89,12 @@ impl From<&(Board, firmware::Image)> for Image {
 pub struct Cost {
     /// Instructions executed inside rendering, counted.
     pub instructions_per_sample: Option<f64>,
-    /// Cycles of an ARM9E-S.
+    /// Cycles, where they were to be counted: of an ARM9E-S or of a Cortex-M3.
     pub cycles_per_sample: Option<f64>,
+    /// The least that they may be, by what the model does not see.
+    pub cycles_per_sample_low: Option<f64>,
+    /// The most.
+    pub cycles_per_sample_high: Option<f64>,
     /// Rays traced.
     pub rays_per_sample: Option<f64>,
 }

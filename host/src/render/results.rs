@@ -4,13 +4,14 @@ use std::fmt::Write as _;
 use std::path::Path;
 use std::time::Duration;
 
+use ::cycles::flow::Recording;
 use indicatif::{ProgressBar, ProgressStyle};
 use tracer::profile::{Paper, Precise};
 use tracer::unit::Termination;
 
 use super::folder::{self, Written};
 use super::options::{Pixels, Reference};
-use super::{Job, Origin, RenderError};
+use super::{Job, Origin, RenderError, cycles};
 use crate::collector::{Collection, CoreRecord, End};
 use crate::firmware::arithmetic::Arithmetic;
 use crate::firmware::board::INSTRUCTIONS_PER_TICK;
@@ -35,6 +36,7 @@ pub(super) struct Results<'a> {
     pub(super) origin: Origin,
     pub(super) wall: Duration,
     pub(super) memory: Option<u64>,
+    pub(super) recordings: &'a [Recording],
 }
 
 /// How wrong the picture is.
@@ -231,10 +233,17 @@ impl Results<'_> {
     fn cost(&self) -> Cost {
         let samples = self.collection.film.samples();
         let per_sample = |total: f64| (samples > 0).then(|| total / samples as f64);
+        let units = self.collection.cores.iter().map(|core| core.units).sum();
+        let [low, likely, high] = match cycles::per_sample(self.recordings, units, samples) {
+            Some(bounds) => bounds.map(Some),
+            None => [None; 3],
+        };
         let instructions = self.collection.ticks() as f64 * INSTRUCTIONS_PER_TICK;
         Cost {
             instructions_per_sample: per_sample(instructions).filter(|_| self.origin.counts_instructions),
-            cycles_per_sample: None,
+            cycles_per_sample: likely,
+            cycles_per_sample_low: low,
+            cycles_per_sample_high: high,
             rays_per_sample: per_sample(self.collection.rays() as f64),
         }
     }
@@ -303,6 +312,16 @@ impl Results<'_> {
                 None => format!("{rays:.2} rays a sample; only emulated cores count instructions"),
             };
             line("cost", said);
+        }
+        if let [Some(low), Some(cycles), Some(high)] = [
+            cost.cycles_per_sample_low,
+            cost.cycles_per_sample,
+            cost.cycles_per_sample_high,
+        ] {
+            line(
+                "cycles",
+                format!("{cycles:.1} a sample, from {low:.1} to {high:.1} by what the model does not see"),
+            );
         }
         if let Some((used, size)) = self.collection.stack() {
             line("stack", format!("at most {used} of {size} bytes used"));
