@@ -6,6 +6,7 @@ mod check;
 mod fuzz;
 mod gdb;
 mod licences;
+mod profile;
 mod qemu_run;
 mod render;
 mod size;
@@ -61,6 +62,12 @@ enum Verb {
     Trace(trace::Arguments),
     /// Print each image's bytes of code, data and stack against the budget
     Size(size::Arguments),
+    /// Say where the cycles of a sample go: by function, by class of instruction, by line, by basic block
+    ///
+    /// Renders a small picture on one core while a plugin of QEMU's records what it executes, and prices the recording by the
+    /// tables of the board's processor. Inlined functions are told apart. Where a function of the image has several callers, its
+    /// cycles are shared among them in proportion to their calls.
+    Profile(profile::Arguments),
     /// Measure parts by themselves
     #[command(subcommand)]
     Bench(bench::Bench),
@@ -117,6 +124,7 @@ fn run(verb: Verb) -> anyhow::Result<ExitCode> {
         Verb::Gdb(arguments) => gdb::run(&arguments),
         Verb::Trace(arguments) => trace::run(&arguments, interrupted),
         Verb::Size(arguments) => size::run(&arguments),
+        Verb::Profile(arguments) => profile::run(&arguments, interrupted),
         Verb::Bench(bench) => bench::run(&bench, interrupted),
         Verb::Verify(arguments) => verify::run(&arguments),
     }

@@ -14,5 +14,6 @@ pub mod fleet;
 pub mod image;
 pub mod oracle;
 pub mod platform;
+pub mod profile;
 pub mod render;
 pub mod scene;

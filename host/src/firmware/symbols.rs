@@ -65,6 +65,8 @@ pub struct Frame {
     pub function: String,
     /// File and line: of the instruction's source in the innermost function, of the call in those around it.
     pub line: Option<String>,
+    /// Whether that is a file of this project.
+    pub ours: bool,
 }
 
 /// The line tables and symbols of an image, for many questions.
@@ -93,27 +95,32 @@ impl Symbols {
 
 fn frames(loader: &Loader, address: u64) -> Result<Vec<Frame>, Box<dyn Error>> {
     let mut tables = loader.find_frames(address)?;
-    let (mut found, mut unclaimed) = (Vec::new(), None);
+    let (mut found, mut nameless) = (Vec::new(), None);
     while let Some(frame) = tables.next()? {
-        let line = frame.location.and_then(|at| Some((at.file?, at.line?)));
-        let line = line.map(|(file, line)| format!("{}:{line}", shortened(file)));
+        let at = frame.location.and_then(|at| Some((at.file?, at.line?)));
+        let at = nameless.take().or(at);
         match frame.function.as_ref().and_then(|name| name.demangle().ok()) {
-            Some(name) => found.push(Frame {
-                function: without_arguments(&name),
-                line: unclaimed.take().or(line),
-            }),
-            None => unclaimed = unclaimed.or(line),
+            Some(name) => found.push(Frame::at(without_arguments(&name), at)),
+            None => nameless = at,
         }
     }
     // Assembly has symbols but no functions in the tables. Past the code, the last symbol would be found for anything.
     let code = loader.get_section_range(b".text");
     if found.is_empty() && code.is_some_and(|code| (code.begin..code.end).contains(&address)) {
-        found.extend(loader.find_symbol(address).map(|symbol| Frame {
-            function: symbol.to_owned(),
-            line: unclaimed,
-        }));
+        let symbol = loader.find_symbol(address);
+        found.extend(symbol.map(|symbol| Frame::at(symbol.to_owned(), nameless)));
     }
     Ok(found)
+}
+
+impl Frame {
+    fn at(function: String, at: Option<(&str, u32)>) -> Self {
+        Self {
+            function,
+            line: at.map(|(file, line)| format!("{}:{line}", shortened(file))),
+            ours: at.is_some_and(|(file, _)| workspace::source(Path::new(file)).is_some()),
+        }
+    }
 }
 
 /// The address of the function that renders a unit, and is called once for each.

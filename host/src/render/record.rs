@@ -8,7 +8,7 @@ use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use cycles::file::{self, FileError};
-use cycles::flow::Recording;
+use cycles::flow::{Flow, Recording};
 
 use super::options::{PictureOptions, Reference};
 use super::{Job, RenderError};
@@ -40,6 +40,9 @@ pub enum RecordError {
     /// The recording is of no use.
     #[error(transparent)]
     File(#[from] FileError),
+    /// It is empty.
+    #[error("there is nothing to profile: the core executed nothing of the function that renders a unit")]
+    Nothing,
     /// The recording is of something else than what was rendered.
     #[error(
         "the recording has {found} calls of the function that renders a unit, and {expected} units were rendered"
@@ -49,6 +52,16 @@ pub enum RecordError {
         found: u64,
         /// As rendered.
         expected: u64,
+    },
+    /// Something else ran in between, whose cost cannot be told apart.
+    #[error(
+        "an exception of the processor came between the instructions at {before:#010x} and {after:#010x}: render once more"
+    )]
+    Interrupted {
+        /// The instruction before it.
+        before: u32,
+        /// The instruction after it.
+        after: u32,
     },
 }
 
@@ -64,7 +77,7 @@ pub struct Recorded {
     /// Rays traced for them.
     pub rays: u64,
     /// What ran while units were rendered.
-    pub recording: Recording,
+    pub flow: Flow,
 }
 
 /// Renders a picture on one core of a board, whatever number of cores the options name, and records what it executes. Files are in
@@ -115,17 +128,14 @@ pub fn record(
     interrupt::finish_first();
     let fleet = QemuFleet::start(qemu, &[core], &job.out().join("cores")).map_err(RenderError::from)?;
     let collection = collect(&session, &socket, fleet, interrupted)?;
-    let recording = file::read(&recording)?;
-    let (found, expected) = (recording.calls(), session.plan.units().unwrap_or_default().into());
-    if found != expected {
-        return Err(RecordError::Calls { found, expected });
-    }
+    let units = session.plan.units().unwrap_or_default();
+    let flow = flow_of(file::read(&recording)?, units.into())?;
     Ok(Recorded {
         elf,
         scene: job.scene.name,
         samples: session.samples(),
         rays: collection.rays(),
-        recording,
+        flow,
     })
 }
 
@@ -149,5 +159,88 @@ fn collect(
         },
         End::Interrupted => Err(RenderError::Interrupted("nothing was kept".to_owned()).into()),
         End::Deserted(why) => Err(RecordError::Died(why.clone())),
+    }
+}
+
+/// The flow of a recording, which must be of all that was rendered, and of nothing else.
+fn flow_of(recording: Recording, expected: u64) -> Result<Flow, RecordError> {
+    let found = recording.calls();
+    // One, because calls are not told apart.
+    let flow = recording
+        .segments
+        .into_iter()
+        .find(|flow| flow.instructions() > 0);
+    let flow = flow.ok_or(RecordError::Nothing)?;
+    if found != expected {
+        return Err(RecordError::Calls { found, expected });
+    }
+    match flow.interruption() {
+        Some((before, after)) => Err(RecordError::Interrupted { before, after }),
+        None => Ok(flow),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use cycles::flow::{Block, Edge, Instruction, Isa};
+
+    use super::*;
+
+    /// A function of one instruction, `bx lr`, that was called so often.
+    fn recording(calls: u64) -> Recording {
+        let instruction = Instruction {
+            address: 0x100,
+            encoding: 0xe12f_ff1e,
+            bytes: 4,
+        };
+        let block = Block {
+            instructions: vec![instruction],
+            passed: vec![0],
+            from_code: vec![0],
+        };
+        let edge = Edge {
+            from: None,
+            to: 0,
+            count: calls,
+        };
+        let flow = Flow {
+            isa: Isa::Arm,
+            blocks: vec![block],
+            edges: vec![edge],
+        };
+        Recording { segments: vec![flow] }
+    }
+
+    #[test]
+    fn only_a_recording_of_all_units_is_taken() {
+        assert!(flow_of(recording(12), 12).is_ok());
+        let error = flow_of(recording(11), 12)
+            .expect_err("a unit is missing")
+            .to_string();
+        assert!(
+            error.contains("11 calls") && error.contains("12 units"),
+            "{error}"
+        );
+        for nothing in [recording(0), Recording { segments: Vec::new() }] {
+            let error = flow_of(nothing, 12).expect_err("nothing").to_string();
+            assert!(error.contains("nothing to profile"), "{error}");
+        }
+    }
+
+    #[test]
+    fn a_recording_with_an_exception_in_it_is_refused() {
+        let mut recording = recording(1);
+        let flow = &mut recording.segments[0];
+        // An addition, behind which something else ran than what stands there.
+        flow.blocks[0].instructions[0].encoding = 0xe080_0001;
+        flow.blocks.push(flow.blocks[0].clone());
+        flow.blocks[1].instructions[0].address = 0x18;
+        flow.edges.push(Edge {
+            from: Some(0),
+            to: 1,
+            count: 1,
+        });
+        let error = flow_of(recording, 1).expect_err("an exception").to_string();
+        assert!(error.contains("0x00000100 and 0x00000018"), "{error}");
     }
 }

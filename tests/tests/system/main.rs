@@ -15,5 +15,6 @@ mod operations;
 mod output;
 mod places;
 mod processes;
+mod profile;
 mod size;
 mod trace;
