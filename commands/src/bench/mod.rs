@@ -14,12 +14,13 @@ pub(crate) enum Bench {
     Generators(generators::Arguments),
     /// Print what each arithmetic operation costs on a core, and how wrong it is
     ///
-    /// Instructions are those of an emulated core without the loop around them: once compiled in line, once
+    /// Instructions and cycles are those of an emulated core without the loop around them: once compiled in line, once
     /// called. A star marks what nothing else of the operation beats in cost and in worst error.
     Ops(ops::Arguments),
     /// Print what a whole sample costs by board, profile and way to end a path, and how wrong it is
     ///
-    /// Renders the same small picture by each of them. It is the same picture on every board.
+    /// Renders the same small picture by each of them. It is the same picture on every board. What is behind a `±` of cycles is what the
+    /// processor's model leaves open.
     Trace(trace::Arguments),
 }
 

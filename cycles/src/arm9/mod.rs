@@ -1,7 +1,7 @@
 //! The ARM9E-S, the processor of the ARM968E-S, with tightly coupled memory and no caches.
 //!
 //! Its table is chapter 8 of the ARM9E-S Technical Reference Manual (ARM DDI 0165 and DDI 0240): cycles of each instruction, and the
-//! interlocks between them. A result that is late makes the first instruction that needs it wait, unless others passed the time; a
+//! interlocks between them; `tests/arm9.rs` has each rule with its source. A result that is late makes the first instruction that needs it wait, unless others passed the time; a
 //! product is not waited for by what adds to it, because the multiplier forwards it to its own accumulator.
 
 mod decode;
@@ -17,6 +17,8 @@ pub(crate) struct Arm9 {
     late: [u32; 16],
     /// Those that come of a load.
     loaded: u16,
+    /// Those that come of a saturating sum, which is in time for being stored.
+    saturated: u16,
 }
 
 impl Arm9 {
@@ -27,7 +29,7 @@ impl Arm9 {
         let accumulates = timing.accumulates & bit != 0 && !is_product;
         if timing.reads & bit != 0 || accumulates {
             late
-        } else if timing.stores & bit != 0 {
+        } else if timing.stores & bit & !self.saturated != 0 {
             // Registers are stored one a cycle.
             late.saturating_sub((timing.stores & (bit - 1)).count_ones())
         } else {
@@ -42,9 +44,12 @@ impl Arm9 {
         for &(register, cycles) in &timing.late {
             self.late[register as usize] = cycles;
             let bit = 1 << register;
+            self.loaded &= !bit;
+            self.saturated &= !bit;
             match timing.class {
                 Class::Load => self.loaded |= bit,
-                _ => self.loaded &= !bit,
+                Class::Alu => self.saturated |= bit,
+                _ => {}
             }
         }
     }

@@ -167,7 +167,7 @@ fn without_costs(table: &str) -> Vec<String> {
         if !cells[1].is_empty() {
             operation = cells[1].to_owned();
         }
-        let kept = [&[operation.as_str()], &cells[2..4], &cells[6..]].concat();
+        let kept = [&[operation.as_str()], &cells[2..4], &cells[7..]].concat();
         lines.push(kept.join(" ").replace('*', ""));
     }
     lines.sort_unstable();

@@ -3,6 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 
+use cycles::file::{self, FileError};
+use cycles::{Cycles, cycles};
 use object::{Object, ObjectSection};
 use operations::Group;
 use operations::price::{CASES, ROUNDS};
@@ -11,7 +13,9 @@ use rayon::prelude::*;
 use super::reach::{Code, Reach};
 use super::{Entry, entries};
 use crate::firmware::board::{Board, INSTRUCTIONS_PER_TICK};
-use crate::firmware::{self, FirmwareError};
+use crate::firmware::plugin::{self, PluginError, Recorder};
+use crate::firmware::symbols::functions;
+use crate::firmware::{self, ElfError, FirmwareError};
 use crate::fleet;
 use crate::platform::setup::Toolchain;
 
@@ -26,6 +30,12 @@ pub struct Measurement {
     pub instructions: f64,
     /// Instructions as a called function.
     pub called_instructions: f64,
+    /// Cycles in line.
+    pub cycles: f64,
+    /// Between what bounds they are, by what the processor's model does not see.
+    pub cycles_within: [f64; 2],
+    /// Cycles as a called function.
+    pub called_cycles: f64,
     /// The called function.
     pub reach: Reach,
     /// The image.
@@ -48,6 +58,30 @@ pub enum BenchError {
         /// What the system said.
         #[source]
         cause: io::Error,
+    },
+    /// There is nothing to count cycles with.
+    #[error(transparent)]
+    Plugin(#[from] PluginError),
+    /// There is no folder for what is recorded.
+    #[error("cannot make a folder for temporary files (set TMPDIR to one with room)")]
+    Folder(#[source] io::Error),
+    /// An image does not show where its loops are.
+    #[error(transparent)]
+    Image(#[from] ElfError),
+    /// What was recorded cannot be read.
+    #[error(transparent)]
+    Recording(#[from] FileError),
+    /// What was recorded are not the loops.
+    #[error(
+        "{image}: {found} loops were recorded where {rows} rows have {LOOPS} each, or an exception came between; run it again"
+    )]
+    Loops {
+        /// The image.
+        image: String,
+        /// Loops recorded.
+        found: usize,
+        /// Rows printed.
+        rows: usize,
     },
     /// The core did not do its work.
     #[error("{image}: the core ended with {status}, and said:\n{said}")]
@@ -86,6 +120,11 @@ pub enum BenchError {
     },
 }
 
+/// The function that every loop runs in.
+const LOOP: &str = "operations::price::timed";
+/// The loops of a row: without the operation, with it in line, and with a call of it.
+const LOOPS: usize = 3;
+
 /// Builds and runs a board's images of these groups, and compares every transcript with the host's.
 pub fn measure(
     toolchain: &Toolchain,
@@ -95,10 +134,11 @@ pub fn measure(
 ) -> Result<Vec<Measurement>, BenchError> {
     let names: Vec<String> = groups.iter().map(|&group| image_name(group)).collect();
     let images = firmware::build_examples(toolchain, board, &names, None)?;
+    let plugin = plugin::ready(qemu)?;
     let pairs: Vec<(Group, PathBuf)> = groups.iter().copied().zip(images).collect();
     let groups: Vec<Vec<Measurement>> = pairs
         .into_par_iter()
-        .map(|(group, elf)| measure_group(qemu, board, group, &elf))
+        .map(|(group, elf)| measure_group(qemu, &plugin, board, group, &elf))
         .collect::<Result<_, _>>()?;
     Ok(groups.concat())
 }
@@ -110,11 +150,19 @@ pub fn image_name(group: Group) -> String {
 
 fn measure_group(
     qemu: &Path,
+    plugin: &Path,
     board: Board,
     group: Group,
     elf: &Path,
 ) -> Result<Vec<Measurement>, BenchError> {
-    let output = fleet::run_to_end(qemu, board, elf).map_err(|cause| BenchError::Start {
+    let folder = tempfile::tempdir().map_err(BenchError::Folder)?;
+    let recorder = Recorder {
+        plugin: plugin.to_owned(),
+        entries: functions(elf, LOOP)?,
+        each: true,
+        file: folder.path().join("flow"),
+    };
+    let output = fleet::run_recorded(qemu, board, elf, &recorder).map_err(|cause| BenchError::Start {
         program: qemu.to_owned(),
         cause,
     })?;
@@ -129,6 +177,7 @@ fn measure_group(
     if !output.status.success() || lines.len() != entries.len() {
         return Err(failed());
     }
+    let loops = loops(&recorder.file, group, entries.len())?;
     let damaged = |cause: String| BenchError::Elf {
         path: elf.to_owned(),
         cause,
@@ -137,21 +186,57 @@ fn measure_group(
     let code = Code::of(&bytes).map_err(damaged)?;
     let compiler =
         compiler_of(&bytes).ok_or_else(|| damaged("it does not say which rustc made it".to_owned()))?;
-    let rows = entries.into_par_iter().zip(lines);
-    rows.map(|(entry, line)| {
+    let rows = entries.into_par_iter().zip(lines).zip(loops);
+    rows.map(|((entry, line), [baseline, inline, called])| {
         compare(&entry, &line)?;
+        let cycles = |with: Cycles| differences(baseline, with);
         let reach = code.from(line.address.into()).ok_or_else(failed)?;
         Ok(Measurement {
             entry,
             board,
             instructions: line.instructions(line.inline),
             called_instructions: line.instructions(line.called),
+            cycles: cycles(inline)[1],
+            cycles_within: [cycles(inline)[0], cycles(inline)[2]],
+            called_cycles: cycles(called)[1],
             reach,
             elf: elf.to_owned(),
             compiler: compiler.clone(),
         })
     })
     .collect()
+}
+
+/// The cycles of each row's loops.
+fn loops(recording: &Path, group: Group, rows: usize) -> Result<Vec<[Cycles; LOOPS]>, BenchError> {
+    let flows = file::read(recording)?.segments;
+    let interrupted = flows.iter().any(|flow| flow.interruption().is_some());
+    if flows.len() != LOOPS * rows || interrupted {
+        return Err(BenchError::Loops {
+            image: image_name(group),
+            found: flows.len(),
+            rows,
+        });
+    }
+    let (triples, _none) = flows.as_chunks::<LOOPS>();
+    Ok(triples
+        .iter()
+        .map(|triple| triple.each_ref().map(cycles))
+        .collect())
+}
+
+/// Mean cycles of an operation: at least, likely, and at most. As with [instructions](Line::instructions), every round does the same,
+/// and what is around all rounds differs by less than half a cycle a round.
+fn differences(baseline: Cycles, with: Cycles) -> [f64; 3] {
+    let mean = |without: u64, with: u64| {
+        let cycles = with as f64 - without as f64;
+        (cycles / f64::from(ROUNDS)).round() / CASES as f64
+    };
+    [
+        mean(baseline.low, with.low),
+        mean(baseline.likely, with.likely),
+        mean(baseline.high, with.high),
+    ]
 }
 
 /// From the comments that compilers and linkers leave: `rustc version 1.96.0 (ac68faa20 2026-05-25)`.

@@ -112,8 +112,12 @@ pub struct Row {
     pub instructions: f64,
     /// Instructions as a function that is called.
     pub called_instructions: f64,
-    /// Cycles; nobody has counted them yet.
-    pub cycles: Option<f64>,
+    /// Cycles of the board's processor, compiled in line.
+    pub cycles: f64,
+    /// Between what bounds they are, by what the processor's model does not see.
+    pub cycles_within: [f64; 2],
+    /// Cycles as a function that is called.
+    pub called_cycles: f64,
     /// The largest error in ulp.
     pub max_error_ulp: Option<f64>,
     /// The mean error in ulp.
@@ -203,7 +207,9 @@ fn row(measurement: &Measurement, errors: Option<&Proof>, is_proof: bool) -> Row
         board: measurement.board,
         instructions: measurement.instructions,
         called_instructions: measurement.called_instructions,
-        cycles: None,
+        cycles: measurement.cycles,
+        cycles_within: measurement.cycles_within,
+        called_cycles: measurement.called_cycles,
         max_error_ulp: errors.map(|errors| errors.max_error_ulp),
         mean_error_ulp: errors.map(|errors| errors.mean_error_ulp),
         ulp: format!("2^-{}", entry.format.fraction_bits),
@@ -259,6 +265,9 @@ mod tests {
             board: Board::default(),
             instructions: 1.0,
             called_instructions: 1.0,
+            cycles: 1.0,
+            cycles_within: [1.0; 2],
+            called_cycles: 1.0,
             reach: reach::Reach {
                 bytes: 4,
                 symbols: Vec::new(),

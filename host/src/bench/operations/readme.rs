@@ -79,8 +79,8 @@ fn place() -> Result<(String, std::ops::Range<usize>), ReadmeError> {
 /// The list as a table of Markdown.
 pub fn markdown(rows: &[Row]) -> String {
     let mut text =
-        "| operation | function | by | instructions | called | worst error, ulp | mean | inputs |\n\
-                    | --- | --- | --- | ---: | ---: | ---: | ---: | --- |\n"
+        "| operation | function | by | instructions | called | cycles | worst error, ulp | mean | inputs |\n\
+                    | --- | --- | --- | ---: | ---: | ---: | ---: | ---: | --- |\n"
             .to_owned();
     for group in grouped(rows) {
         for (place, row) in group.iter().enumerate() {
@@ -90,11 +90,12 @@ pub fn markdown(rows: &[Row]) -> String {
             };
             let star = if is_on_front(row, &group) { "**" } else { "" };
             text += &format!(
-                "| {operation} | {star}`{}`{star} | {} | {:.2} | {:.2} | {} | {} | {} |\n",
+                "| {operation} | {star}`{}`{star} | {} | {:.2} | {:.2} | {:.2} | {} | {} | {} |\n",
                 row.variant,
                 row.maker,
                 row.instructions,
                 row.called_instructions,
+                row.cycles,
                 figure(row.max_error_ulp),
                 figure(row.mean_error_ulp),
                 coverage(row).replace('|', "\\|"),

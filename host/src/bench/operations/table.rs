@@ -8,8 +8,18 @@ use super::Row;
 /// operation beats in cost and in worst error: the Pareto front.
 pub fn table(rows: &[Row]) -> String {
     let mut text = format!(
-        "  {:42} {:10} {:>12} {:>9} {:>6} {:>6} {:>12} {:>11}  {}\n",
-        "", "", "instructions", "called", "code", "tables", "worst error", "mean error", "over"
+        "  {:42} {:10} {:>12} {:>9} {:>8} {:>8} {:>6} {:>6} {:>12} {:>11}  {}\n",
+        "",
+        "",
+        "instructions",
+        "called",
+        "cycles",
+        "called",
+        "code",
+        "tables",
+        "worst error",
+        "mean error",
+        "over"
     );
     for group in grouped(rows) {
         let _ = writeln!(text, "{}, ulp = {}", group[0].op, group[0].ulp);
@@ -17,11 +27,13 @@ pub fn table(rows: &[Row]) -> String {
             let star = if is_on_front(row, &group) { '*' } else { ' ' };
             let _ = writeln!(
                 text,
-                "{star} {:42} {:10} {:>12.2} {:>9.2} {:>6} {:>6} {:>12} {:>11}  {}",
+                "{star} {:42} {:10} {:>12.2} {:>9.2} {:>8.2} {:>8.2} {:>6} {:>6} {:>12} {:>11}  {}",
                 row.variant,
                 row.maker,
                 row.instructions,
                 row.called_instructions,
+                row.cycles,
+                row.called_cycles,
                 row.code_bytes,
                 row.table_bytes.map_or("-".to_owned(), |bytes| bytes.to_string()),
                 figure(row.max_error_ulp),
