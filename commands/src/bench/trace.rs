@@ -5,6 +5,7 @@ use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 
 use anyhow::Context;
+use host::bench::baseline::{self, Baseline};
 use host::bench::samples::{self, Series};
 use host::firmware::board::Board;
 use host::platform::console::say;
@@ -33,6 +34,9 @@ pub(crate) struct Arguments {
     /// Number of cores
     #[arg(long, value_name = "N", default_value = "2", value_parser = clap::value_parser!(u16).range(1..=1024))]
     cores: u16,
+    /// Put the cycles of a small Cornell box into tests/cycles.toml, above which a test lets none rise; measures nothing else
+    #[arg(long, conflicts_with_all = ["scene", "boards", "size", "spp", "reference_spp", "cores", "json"])]
+    bless: bool,
     /// Write the list as JSON, too
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -50,7 +54,15 @@ pub(crate) fn run(arguments: &Arguments, interrupted: &AtomicBool) -> anyhow::Re
         cores: arguments.cores,
         no_install: arguments.set_up.no_install,
     };
+    let series = if arguments.bless {
+        baseline::series()?
+    } else {
+        series
+    };
     let rows = samples::measure(&series, interrupted)?;
+    if arguments.bless {
+        Baseline::of(&rows)?.store()?;
+    }
     if let Some(path) = &arguments.json {
         let json = serde_json::to_string_pretty(&rows)?;
         std::fs::write(path, json + "\n").with_context(|| format!("cannot write {}", path.display()))?;

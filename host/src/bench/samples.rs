@@ -47,6 +47,8 @@ pub struct Row {
     pub scene: String,
     /// `roulette` or `depth:N`.
     pub termination: String,
+    /// The version of the compiler that made the image.
+    pub compiler: Option<String>,
     /// Bytes of code, constants and first values of the image.
     pub itcm_bytes: Option<u64>,
     /// Instructions.
@@ -160,6 +162,7 @@ impl Row {
             profile: report.profile.clone(),
             scene: report.scene.clone(),
             termination: report.termination.clone(),
+            compiler: report.images.first().and_then(|image| image.compiler.clone()),
             itcm_bytes: report.images.first().map(|image| image.size.itcm_bytes),
             instructions_per_sample: report.cost.instructions_per_sample,
             cycles_per_sample: report.cost.cycles_per_sample,
@@ -178,6 +181,11 @@ impl Row {
 }
 
 impl Row {
+    /// Board, profile and way to end a path.
+    pub fn name(&self) -> String {
+        format!("{} {} {}", self.board, self.profile, self.termination)
+    }
+
     /// Its cycles, and by how much they may be more or less where the model leaves that open.
     fn cycles(&self) -> String {
         let Some(cycles) = self.cycles_per_sample else {

@@ -11,7 +11,7 @@ use tracer::scene::Capabilities;
 
 use super::arithmetic::Arithmetic;
 use super::board::Board;
-use super::elf::{ElfError, ImageSize, measure};
+use super::elf::{ElfError, ImageSize, compiler, measure};
 use super::recipe::{Level, Recipe};
 use crate::platform::file::write_whole;
 use crate::platform::interrupt;
@@ -25,6 +25,8 @@ pub struct Image {
     pub elf: PathBuf,
     /// How much memory it takes.
     pub size: ImageSize,
+    /// The version of the compiler that made it, where it says so.
+    pub compiler: Option<String>,
 }
 
 /// Why there is no image.
@@ -113,7 +115,8 @@ pub fn build(toolchain: &Toolchain, board: Board, recipe: &Recipe) -> Result<Ima
         .map_err(|error| failed(&elf)(io::Error::other(error.cause)))?;
     let size = measure(board, &bytes).map_err(|fault| fault.of(&elf))?;
     if size.float_symbols.is_empty() {
-        Ok(Image { elf, size })
+        let compiler = compiler(&bytes);
+        Ok(Image { elf, size, compiler })
     } else {
         Err(FirmwareError::Float {
             path: elf,

@@ -100,6 +100,17 @@ pub fn entry(elf: &Path) -> Result<&'static str, ElfError> {
     found().map_err(|fault: ElfFault| fault.of(elf))
 }
 
+/// The version of the compiler that made an image, from the comments that compilers and linkers leave: `rustc version 1.96.0 (ac68faa20 2026-05-25)`.
+pub fn compiler(elf: &[u8]) -> Option<String> {
+    let file = object::File::parse(elf).ok()?;
+    let comments = file.section_by_name(".comment")?.data().ok()?;
+    let rustc = comments
+        .split(|&byte| byte == 0)
+        .filter_map(|comment| str::from_utf8(comment).ok()?.strip_prefix("rustc version "))
+        .next()?;
+    rustc.split(' ').next().map(str::to_owned)
+}
+
 /// Measures a board's ELF file. What takes memory of a core is what is loaded there and what its sections reserve.
 pub fn measure(board: Board, elf: &[u8]) -> Result<ImageSize, ElfFault> {
     let file = object::File::parse(elf)?;

@@ -19,7 +19,7 @@ pub mod symbols;
 pub use build::{
     FirmwareError, Image, build, build_examples, cargo, cargo_for, environment, example, target_folder,
 };
-pub use elf::{ElfError, ImageSize, board_of, entry, measure};
+pub use elf::{ElfError, ImageSize, board_of, compiler, entry, measure};
 pub use recipe::{Level, Recipe};
 pub use share::{code_bytes, tracer_bytes};
 pub use tracer::scene::{Capabilities, Capability};

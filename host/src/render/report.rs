@@ -70,6 +70,9 @@ pub struct Report {
 pub struct Image {
     /// The board.
     pub board: String,
+    /// The version of the compiler that made it, where it says so.
+    #[serde(default)]
+    pub compiler: Option<String>,
     /// How much of a core's memory it takes.
     #[serde(flatten)]
     pub size: ImageSize,
@@ -79,6 +82,7 @@ impl From<&(Board, firmware::Image)> for Image {
     fn from((board, image): &(Board, firmware::Image)) -> Self {
         Self {
             board: board.name().to_owned(),
+            compiler: image.compiler.clone(),
             size: image.size.clone(),
         }
     }

@@ -4,10 +4,11 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
 use clap::Parser;
-use host::bench::samples::{Series, measure};
+use host::bench::baseline::{self, Baseline};
+use host::bench::samples::measure;
 use host::firmware::arithmetic::Arithmetic;
 use host::firmware::board::Board;
-use host::render::options::{RenderOptions, Size};
+use host::render::options::RenderOptions;
 use host::render::render;
 use host::scene::Scene;
 use tracer::profile::Precise;
@@ -56,20 +57,23 @@ fn every_scene_is_the_same_picture_on_every_board_and_on_the_host() {
 /// The list itself fails where boards disagree.
 #[test]
 fn what_a_sample_costs_is_told_for_every_board_and_profile() {
-    let series = Series {
-        scene: repository("scenes/cornell.toml"),
-        boards: Board::ALL.to_vec(),
-        size: Size {
-            width: 16,
-            height: 12,
-        },
-        spp: 16,
-        reference_spp: 64,
-        cores: 1,
-        no_install: true,
-    };
+    let series = baseline::series().unwrap();
     let rows = measure(&series, &AtomicBool::new(false)).unwrap_or_else(|error| panic!("{error}"));
     println!("{}", host::bench::samples::table(&rows));
+    let (old, now) = (Baseline::load().unwrap(), Baseline::of(&rows).unwrap());
+    if now.compiler != old.compiler {
+        println!(
+            "rustc {} made the images, and the baseline is of {}: not compared",
+            now.compiler, old.compiler
+        );
+    }
+    let risen = old.risen(&now);
+    assert!(
+        risen.is_empty(),
+        "the tracer has become slower:\n{}\nIf that is meant, say why in the changelog, and put the new cycles in the same commit with \
+         `cargo xtask bench trace --bless`",
+        risen.join("\n")
+    );
     assert_eq!(rows.len(), 2 * 2 * Board::ALL.len());
     let cost = |profile: Arithmetic, board| {
         let of = |row: &&host::bench::samples::Row| {

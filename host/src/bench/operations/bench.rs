@@ -5,7 +5,6 @@ use std::{fs, io};
 
 use cycles::file::{self, FileError};
 use cycles::{Cycles, cycles};
-use object::{Object, ObjectSection};
 use operations::Group;
 use operations::price::{CASES, ROUNDS};
 use rayon::prelude::*;
@@ -184,8 +183,8 @@ fn measure_group(
     };
     let bytes = fs::read(elf).map_err(|cause| damaged(cause.to_string()))?;
     let code = Code::of(&bytes).map_err(damaged)?;
-    let compiler =
-        compiler_of(&bytes).ok_or_else(|| damaged("it does not say which rustc made it".to_owned()))?;
+    let compiler = firmware::compiler(&bytes)
+        .ok_or_else(|| damaged("it does not say which rustc made it".to_owned()))?;
     let rows = entries.into_par_iter().zip(lines).zip(loops);
     rows.map(|((entry, line), [baseline, inline, called])| {
         compare(&entry, &line)?;
@@ -237,17 +236,6 @@ fn differences(baseline: Cycles, with: Cycles) -> [f64; 3] {
         mean(baseline.likely, with.likely),
         mean(baseline.high, with.high),
     ]
-}
-
-/// From the comments that compilers and linkers leave: `rustc version 1.96.0 (ac68faa20 2026-05-25)`.
-fn compiler_of(elf: &[u8]) -> Option<String> {
-    let file = object::File::parse(elf).ok()?;
-    let comments = file.section_by_name(".comment")?.data().ok()?;
-    let rustc = comments
-        .split(|&byte| byte == 0)
-        .filter_map(|comment| str::from_utf8(comment).ok()?.strip_prefix("rustc version "))
-        .next()?;
-    rustc.split(' ').next().map(str::to_owned)
 }
 
 fn compare(entry: &Entry, line: &Line) -> Result<(), BenchError> {
