@@ -4,12 +4,14 @@
 #![expect(clippy::print_stdout, reason = "figures of tests, by helpers of theirs")]
 
 mod boards;
+
 mod debugger;
 mod faults;
 mod fleet;
 mod image;
 mod launcher;
 mod log;
+mod meter;
 mod on_target;
 mod operations;
 mod output;

@@ -35,7 +35,7 @@ fn failed(command: Command) -> String {
 }
 
 /// A folder with a program that stands for QEMU, and the PATH that finds it first.
-fn instead_of_qemu(does: &str) -> (TempDir, String) {
+pub(crate) fn instead_of_qemu(does: &str) -> (TempDir, String) {
     let folder = tempfile::tempdir().expect("a folder");
     script(&folder.path().join("qemu-system-arm"), does);
     let path = env::var("PATH").expect("a PATH");
