@@ -2,10 +2,12 @@
 
 use std::path::Path;
 
+use cycles::blind_spot::add;
 use cycles::file::{self, FileError};
 use cycles::flow::{Flow, Recording};
-use cycles::{Cycles, cycles};
+use cycles::{BlindSpot, Cycles, blind_spots, cycles};
 
+use super::report;
 use crate::firmware::ElfError;
 use crate::firmware::plugin::{self, PluginError, Recorder};
 use crate::firmware::symbols::unit_renderer;
@@ -102,6 +104,22 @@ fn read_core(core: &Core, file: &Path, fleet: &dyn Fleet) -> Result<Recording, C
         });
     }
     Ok(recording)
+}
+
+/// What the cycles may be wrong by, as shares of them.
+pub(super) fn unseen(recordings: &[Recording]) -> Vec<report::BlindSpot> {
+    let flows = || recordings.iter().flat_map(|recording| &recording.segments);
+    let total = flows().map(cycles).sum::<Cycles>().likely.max(1) as f64;
+    let mut spots = Vec::new();
+    for spot in flows().flat_map(blind_spots) {
+        add(&mut spots, spot);
+    }
+    let share = |spot: BlindSpot| report::BlindSpot {
+        what: spot.what.to_owned(),
+        less: spot.less as f64 / total,
+        more: spot.more as f64 / total,
+    };
+    spots.into_iter().map(share).collect()
 }
 
 /// Cycles of one sample: of so many samples in so many units. A unit that was rendered twice counts once.

@@ -57,6 +57,9 @@ pub struct Report {
     pub packets: Packets,
     /// What a sample costs on the emulated core.
     pub cost: Cost,
+    /// What `cost`'s cycles may be wrong by, where they were counted.
+    #[serde(default)]
+    pub blind_spots: Vec<BlindSpot>,
     /// How far the picture is from the reference.
     pub error: ErrorFigures,
     /// How far arithmetic alone took it: against the same tracer in double precision with the same random numbers.
@@ -101,6 +104,17 @@ pub struct Cost {
     pub cycles_per_sample_high: Option<f64>,
     /// Rays traced.
     pub rays_per_sample: Option<f64>,
+}
+
+/// Something that the processor's model does not see, and the worst that it can do.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BlindSpot {
+    /// What it is.
+    pub what: String,
+    /// The share of the cycles by which they may be too many.
+    pub less: f64,
+    /// The share by which they may be too few.
+    pub more: f64,
 }
 
 /// Error against the reference. The figures are defined in [`crate::oracle::compare`].
@@ -282,6 +296,11 @@ mod tests {
                 ..Packets::default()
             },
             cost: Cost::default(),
+            blind_spots: vec![BlindSpot {
+                what: "refills".to_owned(),
+                less: 0.02,
+                more: 0.01,
+            }],
             error: ErrorFigures::default(),
             lockstep_error: None,
             per_core: vec![Core {

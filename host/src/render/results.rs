@@ -220,6 +220,7 @@ impl Results<'_> {
             peak_memory_bytes: self.memory,
             packets: self.collection.packets,
             cost: self.cost(),
+            blind_spots: cycles::unseen(self.recordings),
             error,
             lockstep_error: verdict.and_then(|verdict| verdict.lockstep),
             per_core: {
@@ -322,6 +323,11 @@ impl Results<'_> {
                 "cycles",
                 format!("{cycles:.1} a sample, from {low:.1} to {high:.1} by what the model does not see"),
             );
+            let worth_a_line = |spot: &&report::BlindSpot| spot.less + spot.more > 1e-5;
+            for spot in report.blind_spots.iter().filter(worth_a_line) {
+                let (less, more) = (100.0 * spot.less, 100.0 * spot.more);
+                line("unseen", format!("-{less:.3} % to +{more:.3} %: {}", spot.what));
+            }
         }
         if let Some((used, size)) = self.collection.stack() {
             line("stack", format!("at most {used} of {size} bytes used"));
