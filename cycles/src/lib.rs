@@ -1,8 +1,8 @@
 //! What a core's execution costs in cycles.
 //!
 //! QEMU executes instructions and knows no pipeline. So a plugin (`cycles-plugin`) records which blocks of instructions ran after
-//! which, a [`flow::Recording`], and this library prices it afterwards by the
-//! tables of the ARM9E-S or of the Cortex-M3: [`price()`] instruction by instruction, [`cycles()`] in all.
+//! which, a [`flow::Recording`], and this library prices it afterwards by the tables of the ARM9E-S or of the Cortex-M3: [`price()`]
+//! instruction by instruction, [`cycles()`] in all.
 //!
 //! `host` has cores recorded (`cargo xtask render --cycles`, `bench`, `profile`), and `docs/cycles.md` says what is in the tables and what they
 //! do not see: [`blind_spots()`] says how much that is for a given flow.

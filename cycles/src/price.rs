@@ -54,12 +54,12 @@ pub fn price(flow: &Flow, assumptions: Assumptions) -> Vec<Priced> {
     }
 }
 
-/// The sum of a flow's prices, literals and tables in data memory.
-pub fn cycles(flow: &Flow) -> Cycles {
+/// The sum of a flow's prices, where an access to instruction memory takes so many cycles longer.
+pub fn cycles(flow: &Flow, code_access: u32) -> Cycles {
     let [low, likely, high] = [Estimate::Low, Estimate::Likely, Estimate::High].map(|estimate| {
         let assumptions = Assumptions {
             estimate,
-            ..Assumptions::default()
+            code_access,
         };
         price(flow, assumptions).iter().map(|priced| priced.cycles).sum()
     });

@@ -6,7 +6,7 @@
 mod sequence;
 
 use cycles::flow::{Flow, Isa};
-use cycles::{Assumptions, Estimate, cycles, price};
+use cycles::{Assumptions, cycles, price};
 use sequence::{flow, straight};
 
 /// What is shown, where it stands, the program, and its cycles.
@@ -70,7 +70,7 @@ const SEQUENCES: &[Sequence] = &[
 fn every_sequence_takes_the_cycles_that_the_manuals_give() {
     for &(about, source, program, expected) in SEQUENCES {
         let words: Vec<u32> = program.iter().map(|&(_, word)| word).collect();
-        let found = cycles(&straight(Isa::Arm, &words));
+        let found = cycles(&straight(Isa::Arm, &words), 0);
         let text: Vec<&str> = program.iter().map(|&(text, _)| text).collect();
         assert_eq!(
             (found.low, found.likely, found.high),
@@ -92,7 +92,7 @@ const BL: u32 = 0xeb00_0000; // bl .+8
 const BX: u32 = 0xe12f_ff1e; // bx lr
 
 fn likely(flow: &Flow) -> u64 {
-    cycles(flow).likely
+    cycles(flow, 0).likely
 }
 
 /// `first`, then what is at its end or beyond it, by one edge.
@@ -178,11 +178,11 @@ fn a_failed_condition_takes_a_cycle_and_keeps_nobody_waiting() {
 /// Whether a product was computed leaves no trace: its price has bounds.
 #[test]
 fn what_a_recording_does_not_show_is_between_bounds() {
-    let found = cycles(&straight(Isa::Arm, &[0x1000_0291])); // mulne r0, r1, r2
+    let found = cycles(&straight(Isa::Arm, &[0x1000_0291]), 0); // mulne r0, r1, r2
     assert_eq!((found.low, found.likely, found.high), (1, 2, 2));
-    let found = cycles(&straight(Isa::Arm, &[0x11a0_0211])); // movne r0, r1, lsl r2
+    let found = cycles(&straight(Isa::Arm, &[0x11a0_0211]), 0); // movne r0, r1, lsl r2
     assert_eq!((found.low, found.likely, found.high), (1, 2, 2));
-    let found = cycles(&straight(Isa::Arm, &[0x11a0_2003])); // movne r2, r3
+    let found = cycles(&straight(Isa::Arm, &[0x11a0_2003]), 0); // movne r2, r3
     assert_eq!((found.low, found.likely, found.high), (1, 1, 1));
 }
 
@@ -191,15 +191,6 @@ fn literals_in_instruction_memory_cost_what_is_assumed() {
     let mut flow = flow(Isa::Arm, &[&[LDR, MOV]], &[(None, 0, 10)]);
     flow.blocks[0].passed[0] = 10;
     flow.blocks[0].from_code[0] = 4;
-    let total = |code_access| {
-        let assumptions = Assumptions {
-            estimate: Estimate::Likely,
-            code_access,
-        };
-        price(&flow, assumptions)
-            .iter()
-            .map(|priced| priced.cycles)
-            .sum::<u64>()
-    };
+    let total = |code_access| cycles(&flow, code_access).likely;
     assert_eq!((total(0), total(1), total(2)), (20, 24, 28));
 }

@@ -49,7 +49,7 @@ const SEQUENCES: &[Sequence] = &[
 ];
 
 fn bounds(flow: &Flow) -> [u64; 3] {
-    let Cycles { low, likely, high } = cycles(flow);
+    let Cycles { low, likely, high } = cycles(flow, 0);
     [low, likely, high]
 }
 

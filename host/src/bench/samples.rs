@@ -148,6 +148,7 @@ impl Series {
             backend: Backend::Qemu,
             log: None,
             cycles: true,
+            code_access: 0,
             port: None,
             no_install: self.no_install,
         }

@@ -9,6 +9,7 @@ use std::process::Command;
 use cycles::flow::Isa;
 
 use super::board::{Board, with_path};
+use crate::platform::console::patiently;
 use crate::platform::interrupt;
 use crate::platform::workspace::{self, NoWorkspace};
 
@@ -140,7 +141,8 @@ fn build() -> Result<PathBuf, PluginError> {
     command
         .current_dir(&root)
         .args(["build", "--quiet", "--locked", "--release", "--package", PACKAGE]);
-    let output = interrupt::output(&mut command).map_err(|cause| PluginError::Start {
+    let output = patiently("building QEMU's plugin", || interrupt::output(&mut command));
+    let output = output.map_err(|cause| PluginError::Start {
         program: cargo,
         cause,
     })?;

@@ -57,11 +57,18 @@ pub enum CyclesError {
 #[derive(Clone, Debug)]
 pub(super) struct Meter {
     cores: Vec<Core>,
+    /// Cycles that an access to instruction memory takes longer.
+    code_access: u32,
 }
 
 impl Meter {
     /// Has the flows of all cores recorded, in files of this folder.
-    pub(super) fn attach(qemu: &Path, cores: &mut [Core], folder: &Path) -> Result<Self, CyclesError> {
+    pub(super) fn attach(
+        qemu: &Path,
+        cores: &mut [Core],
+        folder: &Path,
+        code_access: u32,
+    ) -> Result<Self, CyclesError> {
         let plugin = plugin::ready(qemu)?;
         for core in &mut *cores {
             core.recorder = Some(Recorder {
@@ -72,7 +79,7 @@ impl Meter {
             });
         }
         let cores = cores.to_vec();
-        Ok(Self { cores })
+        Ok(Self { cores, code_access })
     }
 
     /// What was recorded, once the fleet has ended.
@@ -109,7 +116,7 @@ fn read_core(core: &Core, file: &Path, fleet: &dyn Fleet) -> Result<Recording, C
 /// What the cycles may be wrong by, as shares of them.
 pub(super) fn unseen(recordings: &[Recording]) -> Vec<report::BlindSpot> {
     let flows = || recordings.iter().flat_map(|recording| &recording.segments);
-    let total = flows().map(cycles).sum::<Cycles>().likely.max(1) as f64;
+    let total = flows().map(|flow| cycles(flow, 0)).sum::<Cycles>().likely.max(1) as f64;
     let mut spots = Vec::new();
     for spot in flows().flat_map(blind_spots) {
         add(&mut spots, spot);
@@ -123,13 +130,18 @@ pub(super) fn unseen(recordings: &[Recording]) -> Vec<report::BlindSpot> {
 }
 
 /// Cycles of one sample: of so many samples in so many units. A unit that was rendered twice counts once.
-pub(super) fn per_sample(recordings: &[Recording], units: u64, samples: u64) -> Option<[f64; 3]> {
-    let flows = || recordings.iter().flat_map(|recording| &recording.segments);
+pub(super) fn per_sample(
+    meter: &Meter,
+    recordings: &[Recording],
+    units: u64,
+    samples: u64,
+) -> Option<[f64; 3]> {
     let calls: u64 = recordings.iter().map(Recording::calls).sum();
     if calls == 0 || samples == 0 {
         return None;
     }
-    let Cycles { low, likely, high } = flows().map(cycles).sum();
+    let flows = recordings.iter().flat_map(|recording| &recording.segments);
+    let Cycles { low, likely, high } = flows.map(|flow| cycles(flow, meter.code_access)).sum();
     let once = units as f64 / calls as f64;
     Some([low, likely, high].map(|cycles| cycles as f64 * once / samples as f64))
 }

@@ -315,7 +315,7 @@ impl Job {
                 let folder = self.out.path().join("cores");
                 let meter = options
                     .cycles
-                    .then(|| Meter::attach(qemu, &mut cores, &folder))
+                    .then(|| Meter::attach(qemu, &mut cores, &folder, options.code_access))
                     .transpose()?;
                 let fleet = QemuFleet::start(qemu, &cores, &folder)?;
                 let origin = Origin {

@@ -90,6 +90,9 @@ pub struct RenderOptions {
     /// Count cycles, too: with a plugin in QEMU, which then takes about twice as long
     #[arg(long)]
     pub cycles: bool,
+    /// Cycles that an access to literals and tables in instruction memory takes longer, for the count
+    #[arg(long, value_name = "N", default_value = "0", requires = "cycles")]
+    pub code_access: u32,
     /// UDP port of the collector [default: any free one]
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub port: Option<u16>,
@@ -336,6 +339,8 @@ mod tests {
             "--port",
             "0",
             "--cycles",
+            "--code-access",
+            "1",
             "--no-install",
         ])
         .expect("these are all good");
@@ -372,6 +377,7 @@ mod tests {
             (["--pixels", "spiral"], "leased, sequential, stochastic"),
             (["--backend", "cloud"], "qemu, native"),
             (["--log", "loud"], "error, warn, info, debug, trace"),
+            (["--code-access", "1"], "--cycles"),
             (["--port", "65536"], "0..=65535"),
             (["--patience", "0"], "1.."),
             (["--reference-spp", "7"], "a multiple of 4"),

@@ -235,10 +235,9 @@ impl Results<'_> {
         let samples = self.collection.film.samples();
         let per_sample = |total: f64| (samples > 0).then(|| total / samples as f64);
         let units = self.collection.cores.iter().map(|core| core.units).sum();
-        let [low, likely, high] = match cycles::per_sample(self.recordings, units, samples) {
-            Some(bounds) => bounds.map(Some),
-            None => [None; 3],
-        };
+        let meter = self.origin.meter.as_ref();
+        let bounds = meter.and_then(|meter| cycles::per_sample(meter, self.recordings, units, samples));
+        let [low, likely, high] = bounds.map_or([None; 3], |bounds| bounds.map(Some));
         let instructions = self.collection.ticks() as f64 * INSTRUCTIONS_PER_TICK;
         Cost {
             instructions_per_sample: per_sample(instructions).filter(|_| self.origin.counts_instructions),

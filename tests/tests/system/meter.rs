@@ -73,7 +73,7 @@ fn what_was_counted_by_hand_is_what_the_meter_counts() {
                 (1, None),
                 "{name} on {board}"
             );
-            let Cycles { low, likely, high } = cycles::cycles(flow);
+            let Cycles { low, likely, high } = cycles::cycles(flow, 0);
             let expected = match board {
                 Board::Versatilepb => [*on_arm9; 3],
                 Board::Mps2An385 => *on_cortex_m3,

@@ -220,7 +220,7 @@ fn loops(recording: &Path, group: Group, rows: usize) -> Result<Vec<[Cycles; LOO
     let (triples, _none) = flows.as_chunks::<LOOPS>();
     Ok(triples
         .iter()
-        .map(|triple| triple.each_ref().map(cycles))
+        .map(|triple| triple.each_ref().map(|flow| cycles(flow, 0)))
         .collect())
 }
 
