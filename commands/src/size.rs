@@ -63,6 +63,7 @@ pub(crate) fn measure(toolchain: &Toolchain, scene: &Scene) -> anyhow::Result<Ve
             profile,
             needs: compiled.needs.with(Capability::Roulette),
             log: None,
+            soft_float: None,
         };
         let image = firmware::build(toolchain, board, &recipe)?;
         let footprint = Footprint::of(board, profile, &scene.name, &image, boot_block)?;

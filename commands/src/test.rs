@@ -130,6 +130,7 @@ fn lint_firmware(toolchain: &Toolchain, scene: &Scene) -> anyhow::Result<()> {
             profile: Arithmetic::Precise,
             needs,
             log,
+            soft_float: None,
         };
         let mut command = firmware::cargo(toolchain, board, "clippy", &recipe)?;
         command.args(["--lib", "--bins", "--examples", "--", "--deny", "warnings"]);

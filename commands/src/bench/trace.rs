@@ -37,6 +37,9 @@ pub(crate) struct Arguments {
     /// Put the cycles of a small Cornell box into tests/cycles.toml, above which a test lets none rise; measures nothing else
     #[arg(long, conflicts_with_all = ["scene", "boards", "size", "spp", "reference_spp", "cores", "json"])]
     bless: bool,
+    /// Render with `precise`'s formulas in soft f32 and f64, too, in images that do not fit a core's memory: some minutes
+    #[arg(long)]
+    soft_float: bool,
     /// Write the list as JSON, too
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -52,6 +55,7 @@ pub(crate) fn run(arguments: &Arguments, interrupted: &AtomicBool) -> anyhow::Re
         spp: arguments.spp,
         reference_spp: arguments.reference_spp,
         cores: arguments.cores,
+        soft_float: arguments.soft_float,
         no_install: arguments.set_up.no_install,
     };
     let series = if arguments.bless {

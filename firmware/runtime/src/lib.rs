@@ -27,7 +27,7 @@ mod run;
 pub use board::Board;
 pub use exit_code::ExitCode;
 pub use fault::{report_exception, report_fault, report_panic};
-pub use run::{run, work};
+pub use run::{Work, run, run_with, work};
 
 // What nobody calls: no_float.x sees by it whether the linker knows what it has dropped.
 core::arch::global_asm!(

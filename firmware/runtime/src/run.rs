@@ -14,6 +14,15 @@ use crate::{clock, memory};
 
 /// One core's whole life: reads its boot block, works until told to stop, exits with a code. To be called first and once.
 pub fn run<B: Board>() -> ! {
+    run_with::<B>(work)
+}
+
+/// As [`work`], for another tracer than the image's.
+pub type Work = fn(&Boot<'_>, Name, &mut dyn Network, &mut dyn Clock) -> Result<Outcome, node::Fault>;
+
+/// As [`run`], with this work.
+#[inline(always)]
+pub fn run_with<B: Board>(work: Work) -> ! {
     memory::paint_stack();
     let boot = match Boot::decode(memory::boot_block()) {
         Ok(boot) => boot,

@@ -74,6 +74,7 @@ pub fn series() -> Result<Series, NoWorkspace> {
         spp: 16,
         reference_spp: 64,
         cores: 1,
+        soft_float: false,
         no_install: true,
     })
 }

@@ -7,6 +7,7 @@ use std::sync::atomic::AtomicBool;
 use serde::Serialize;
 use tracer::unit::Termination;
 
+use crate::firmware::SoftFloat;
 use crate::firmware::arithmetic::Arithmetic;
 use crate::firmware::board::Board;
 use crate::platform::interrupt::LastAct;
@@ -29,6 +30,8 @@ pub struct Series {
     pub reference_spp: u32,
     /// Cores.
     pub cores: u16,
+    /// Whether `precise` is rendered in soft float, too.
+    pub soft_float: bool,
     /// Whether set-up must leave the machine as it is.
     pub no_install: bool,
 }
@@ -84,10 +87,10 @@ pub fn measure(series: &Series, interrupted: &AtomicBool) -> Result<Vec<Row>, Se
     // Whatever of it stays, it is in a folder for what may go away.
     let _removes = LastAct::new(move || drop(std::fs::remove_dir_all(&place)));
     let mut rows: Vec<Row> = Vec::new();
-    for (profile, end) in kinds() {
+    for kind in kinds(series.soft_float) {
         let first = rows.len();
         for &board in &series.boards {
-            let options = series.options(board, profile, end, folder.path());
+            let options = series.options(board, kind, folder.path());
             rows.push(Row::new(board, &render::render(&options, interrupted)?.report));
         }
         let others = rows[first..].windows(2);
@@ -101,10 +104,28 @@ pub fn measure(series: &Series, interrupted: &AtomicBool) -> Result<Vec<Row>, Se
     Ok(rows)
 }
 
-fn kinds() -> impl Iterator<Item = (Arithmetic, Termination)> {
-    Arithmetic::ALL
-        .into_iter()
-        .flat_map(|profile| TERMINATIONS.map(|end| (profile, end)))
+/// What is rendered on every board.
+#[derive(Clone, Copy)]
+struct Kind {
+    profile: Arithmetic,
+    end: Termination,
+    soft_float: Option<SoftFloat>,
+}
+
+fn kinds(soft_float: bool) -> impl Iterator<Item = Kind> {
+    let fixed = Arithmetic::ALL.into_iter().flat_map(|profile| {
+        TERMINATIONS.map(|end| Kind {
+            profile,
+            end,
+            soft_float: None,
+        })
+    });
+    let formats = SoftFloat::ALL.into_iter().filter(move |_| soft_float);
+    fixed.chain(formats.map(|format| Kind {
+        profile: Arithmetic::Precise,
+        end: Termination::Roulette,
+        soft_float: Some(format),
+    }))
 }
 
 /// Why there is no list.
@@ -126,16 +147,16 @@ pub enum SeriesError {
 }
 
 impl Series {
-    fn options(&self, board: Board, profile: Arithmetic, end: Termination, out: &Path) -> RenderOptions {
+    fn options(&self, board: Board, kind: Kind, out: &Path) -> RenderOptions {
         RenderOptions {
             picture: PictureOptions {
                 scene: Some(self.scene.clone()),
                 size: self.size,
                 spp: self.spp,
                 cores: self.cores,
-                profile,
+                profile: kind.profile,
                 epsilon: None,
-                termination: End(end),
+                termination: End(kind.end),
                 pixels: Pixels::Leased,
                 seed: 1,
                 reference: None,
@@ -149,6 +170,7 @@ impl Series {
             log: None,
             cycles: true,
             code_access: 0,
+            soft_float: kind.soft_float,
             port: None,
             no_install: self.no_install,
         }
@@ -209,7 +231,7 @@ impl Row {
 /// The list for people, boards side by side, what is behind a `±` being one standard error at most.
 pub fn table(rows: &[Row]) -> String {
     let mut lines = vec![format!(
-        "{:8} {:10} {:12} {:>8} {:>12} {:>17} {:>6} {:>18} {:>18} {:>9}",
+        "{:14} {:10} {:12} {:>8} {:>12} {:>17} {:>6} {:>18} {:>18} {:>9}",
         "profile",
         "paths",
         "board",
@@ -230,7 +252,7 @@ pub fn table(rows: &[Row]) -> String {
         |value: Option<f64>, digits| value.map_or("-".to_owned(), |value| format!("{value:.digits$}"));
     lines.extend(rows.iter().map(|row| {
         format!(
-            "{:8} {:10} {:12} {:>8} {:>12} {:>17} {:>6} {:>18} {:>18} {:>9}",
+            "{:14} {:10} {:12} {:>8} {:>12} {:>17} {:>6} {:>18} {:>18} {:>9}",
             row.profile,
             row.termination,
             row.board,

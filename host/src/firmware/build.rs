@@ -97,6 +97,11 @@ pub fn build(toolchain: &Toolchain, board: Board, recipe: &Recipe) -> Result<Ima
     let lock = File::create(&lock_path).map_err(failed(&lock_path))?;
     lock.lock().map_err(failed(&lock_path))?;
     let mut command = cargo(toolchain, board, "build", recipe)?;
+    let mut built = folder.join(board.target()).join("firmware").join(board.name());
+    if let Some(format) = recipe.soft_float {
+        command.args(["--example", format.example()]);
+        built = example(board, format.example())?;
+    }
     let output = interrupt::output(&mut command).map_err(failed(&toolchain.compiler.cargo))?;
     if !output.status.success() {
         return Err(FirmwareError::Build {
@@ -106,7 +111,6 @@ pub fn build(toolchain: &Toolchain, board: Board, recipe: &Recipe) -> Result<Ima
             output: String::from_utf8_lossy(&output.stderr).trim_end().to_owned(),
         });
     }
-    let built = folder.join(board.target()).join("firmware").join(board.name());
     let elf = images.join(recipe.file_name(board));
     let bytes = fs::read(&built).map_err(failed(&built))?;
     drop(lock);
@@ -114,7 +118,7 @@ pub fn build(toolchain: &Toolchain, board: Board, recipe: &Recipe) -> Result<Ima
     write_whole(&elf, |file| file.write_all(&bytes))
         .map_err(|error| failed(&elf)(io::Error::other(error.cause)))?;
     let size = measure(board, &bytes).map_err(|fault| fault.of(&elf))?;
-    if size.float_symbols.is_empty() {
+    if size.float_symbols.is_empty() || recipe.soft_float.is_some() {
         let compiler = compiler(&bytes);
         Ok(Image { elf, size, compiler })
     } else {
@@ -136,6 +140,7 @@ pub fn build_examples(
         profile: Arithmetic::Precise,
         needs: Capabilities::ALL,
         log,
+        soft_float: None,
     };
     let mut command = cargo(toolchain, board, "build", &recipe)?;
     for name in names {

@@ -14,6 +14,7 @@ pub mod log;
 pub mod plugin;
 mod recipe;
 mod share;
+mod soft_float;
 pub mod symbols;
 
 pub use build::{
@@ -22,4 +23,5 @@ pub use build::{
 pub use elf::{ElfError, ImageSize, board_of, compiler, entry, measure};
 pub use recipe::{Level, Recipe};
 pub use share::{code_bytes, tracer_bytes};
+pub use soft_float::SoftFloat;
 pub use tracer::scene::{Capabilities, Capability};

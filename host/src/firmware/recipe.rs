@@ -6,6 +6,7 @@ use tracer::scene::Capabilities;
 
 use super::arithmetic::Arithmetic;
 use super::board::Board;
+use super::soft_float::SoftFloat;
 
 /// How grave a line is; a core with a log says all that is at least as grave as the level it was built for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, clap::ValueEnum)]
@@ -50,6 +51,8 @@ pub struct Recipe {
     pub needs: Capabilities,
     /// What it logs; none for an image without a log, the one that is measured.
     pub log: Option<Level>,
+    /// The format that it computes in instead of fixed point; none for an image that may be a render's.
+    pub soft_float: Option<SoftFloat>,
 }
 
 impl Recipe {
@@ -61,15 +64,27 @@ impl Recipe {
     /// The recipe in words.
     pub fn describe(&self) -> String {
         let log = self.log.map(|level| format!(", logging {level}"));
+        let float = self.soft_float.map(|format| format!(", in soft {format}"));
         let words = self.words().replace(',', ", ");
-        format!("profile {} and {words}{}", self.profile, log.unwrap_or_default())
+        format!(
+            "profile {} and {words}{}{}",
+            self.profile,
+            float.unwrap_or_default(),
+            log.unwrap_or_default()
+        )
     }
 
     /// The image's file name.
     pub(super) fn file_name(&self, board: Board) -> String {
         let log = self.log.map(|level| format!("-log-{level}"));
+        let float = self.soft_float.map(|format| format!("-{format}"));
         let words = self.words().replace(',', "-");
-        format!("{board}-{}-{words}{}.elf", self.profile, log.unwrap_or_default())
+        format!(
+            "{board}-{}-{words}{}{}.elf",
+            self.profile,
+            float.unwrap_or_default(),
+            log.unwrap_or_default()
+        )
     }
 }
 
@@ -86,6 +101,7 @@ mod tests {
             profile: Arithmetic::Paper,
             needs,
             log: None,
+            soft_float: None,
         };
         assert_eq!(recipe.words(), "diffuse,glass,roulette");
         assert_eq!(
@@ -99,6 +115,14 @@ mod tests {
         assert_eq!(
             logging.file_name(Board::Versatilepb),
             "versatilepb-paper-diffuse-glass-roulette-log-debug.elf"
+        );
+        let soft = Recipe {
+            soft_float: Some(SoftFloat::Double),
+            ..recipe
+        };
+        assert_eq!(
+            soft.file_name(Board::Versatilepb),
+            "versatilepb-paper-diffuse-glass-roulette-f64.elf"
         );
     }
 }

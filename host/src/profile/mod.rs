@@ -1,7 +1,7 @@
 //! Where the cycles of a sample go: one core renders a small picture while its flow of execution is recorded, and what it cost is
 //! said by function, by class of instruction, by line and by basic block.
 //!
-//! Inlined functions are told apart by the image's line tables. How calls between functions of the image are shared out, [`calls`]
+//! Inlined functions are told apart by the image's line tables. How calls between functions of the image are shared out, `calls`
 //! says.
 
 mod account;
@@ -21,9 +21,9 @@ use std::sync::atomic::AtomicBool;
 
 use cycles::{Assumptions, Estimate};
 
-use crate::firmware::ElfError;
 use crate::firmware::arithmetic::Arithmetic;
 use crate::firmware::board::Board;
+use crate::firmware::{ElfError, SoftFloat};
 use crate::platform::interrupt::LastAct;
 use crate::platform::setup::{self, Install, SetupError, Wanted};
 use crate::platform::workspace::{self, NoWorkspace};
@@ -47,6 +47,9 @@ pub struct ProfileOptions {
     /// Arithmetic
     #[arg(long, value_enum, default_value_t)]
     pub profile: Arithmetic,
+    /// Compute in soft float instead of fixed point, by the profile's formulas, in an image that does not fit a core's memory
+    #[arg(long, value_name = "f32|f64", value_enum)]
+    pub soft_float: Option<SoftFloat>,
     /// Width and height in pixels
     #[arg(long, value_name = "WxH", default_value = "64x48")]
     pub size: Size,
@@ -117,7 +120,7 @@ impl ProfileOptions {
         let epsilon = self.epsilon.map_or(self.profile.epsilon(), |epsilon| epsilon.0);
         Subject {
             board: self.board.name().to_owned(),
-            profile: self.profile.name().to_owned(),
+            profile: SoftFloat::profile(self.profile, self.soft_float),
             scene,
             size: [self.size.width, self.size.height],
             spp: self.spp,
@@ -167,7 +170,7 @@ pub fn profile(
     let place = folder.path().to_owned();
     let _removes = LastAct::new(move || drop(std::fs::remove_dir_all(&place)));
     let picture = options.picture(scene, folder.path());
-    let recorded = record(&picture, options.board, install, interrupted)?;
+    let recorded = record(&picture, options.board, options.soft_float, install, interrupted)?;
     let mut profile = account(options, &recorded, blocks)?;
     if let Some(debugger) = debugger {
         blocks::disassemble(&debugger, &recorded.elf, &mut profile.run.blocks)?;

@@ -14,7 +14,7 @@ use std::thread;
 
 use super::folder::clear_cores;
 use super::options::PictureOptions;
-use super::{Job, RenderError};
+use super::{Job, Kind, RenderError};
 use crate::collector::{self, CollectError};
 use crate::firmware::board::Board;
 use crate::firmware::{self, FirmwareError, Image};
@@ -57,7 +57,7 @@ pub fn debug(options: &DebugOptions) -> Result<ExitStatus, RenderError> {
     let (Some(qemu), Some(gdb), Some(toolchain)) = (&tools.qemu, &tools.gdb, &tools.firmware) else {
         return Err(SetupError::StillMissing("one of QEMU, gdb and a compiler".to_owned()).into());
     };
-    let Image { elf, .. } = job.image(toolchain, options.board, None)?;
+    let Image { elf, .. } = job.image(toolchain, options.board, Kind::default())?;
     let port = free_port().map_err(|cause| RenderError::Debugger {
         program: gdb.clone(),
         cause,

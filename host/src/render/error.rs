@@ -93,6 +93,9 @@ pub enum RenderError {
     /// Threads have no cycles.
     #[error("cycles are counted only in QEMU: leave out --cycles, or --backend native")]
     NoCycles,
+    /// Threads have a floating-point unit.
+    #[error("soft float is for cores in QEMU: leave out --soft-float, or --backend native")]
+    NoSoftFloat,
     /// The cycles could not be counted.
     #[error(transparent)]
     Cycles(#[from] CyclesError),

@@ -25,9 +25,9 @@ use tracer::unit::{Plan, Termination};
 use wire::Name;
 
 use crate::collector::{self, CollectError, Collection, End, Progress};
-use crate::firmware::Level;
 use crate::firmware::board::Board;
 use crate::firmware::{self, Image, Recipe};
+use crate::firmware::{Level, SoftFloat};
 use crate::fleet::session::{Route, Session, boot_block_len};
 use crate::fleet::{Core, Elsewhere, Fleet, NativeFleet, QemuFleet};
 use crate::image::openexr;
@@ -80,6 +80,8 @@ struct Origin {
     counts_instructions: bool,
     /// What they logged.
     log: Option<PathBuf>,
+    /// What they computed in instead of fixed point.
+    soft_float: Option<SoftFloat>,
     /// What records their flows.
     meter: Option<Meter>,
 }
@@ -152,6 +154,7 @@ impl Job {
                 Termination::Depth(_) => self.compiled.needs,
             },
             log: None,
+            soft_float: None,
         }
     }
 
@@ -170,6 +173,7 @@ impl Job {
             images: Vec::new(),
             counts_instructions: false,
             log: None,
+            soft_float: None,
             meter: None,
         };
         self.collect(
@@ -267,6 +271,13 @@ pub fn render(options: &RenderOptions, interrupted: &AtomicBool) -> Result<Finis
     Job::new(&options.picture)?.render(options, None, interrupted)
 }
 
+/// What kind of image the cores have.
+#[derive(Clone, Copy, Debug, Default)]
+struct Kind {
+    log: Option<Level>,
+    soft_float: Option<SoftFloat>,
+}
+
 /// Whose packets are to be recorded, and where.
 struct Capture {
     core: u16,
@@ -283,6 +294,9 @@ impl Job {
         if options.backend == Backend::Native && options.log.is_some() {
             return Err(RenderError::NoLog);
         }
+        if options.backend == Backend::Native && options.soft_float.is_some() {
+            return Err(RenderError::NoSoftFloat);
+        }
         if options.backend == Backend::Native && options.cycles {
             return Err(RenderError::NoCycles);
         }
@@ -296,7 +310,11 @@ impl Job {
             ..Wanted::default()
         };
         let tools = setup::ensure(wanted, Install::unless(options.no_install))?;
-        let images = self.build(&tools, &options.boards, options.log)?;
+        let kind = Kind {
+            log: options.log,
+            soft_float: options.soft_float,
+        };
+        let images = self.build(&tools, &options.boards, kind)?;
         let route = if emulated {
             Route::qemu(port)
         } else {
@@ -324,6 +342,7 @@ impl Job {
                     images: images.iter().map(report::Image::from).collect(),
                     counts_instructions: true,
                     log: fleet.log().map(Path::to_owned),
+                    soft_float: options.soft_float,
                     meter,
                 };
                 (Box::new(fleet) as Box<dyn Fleet>, origin)
@@ -336,6 +355,7 @@ impl Job {
                     images: Vec::new(),
                     counts_instructions: false,
                     log: None,
+                    soft_float: None,
                     meter: None,
                 };
                 (Box::new(fleet) as Box<dyn Fleet>, origin)
@@ -355,22 +375,21 @@ impl Job {
     }
 
     /// The image of each board, where there is a toolchain for it.
-    fn build(
-        &self,
-        tools: &Tools,
-        boards: &[Board],
-        log: Option<Level>,
-    ) -> Result<Vec<(Board, Image)>, RenderError> {
+    fn build(&self, tools: &Tools, boards: &[Board], kind: Kind) -> Result<Vec<(Board, Image)>, RenderError> {
         let Some(toolchain) = &tools.firmware else {
             return Ok(Vec::new());
         };
-        let build = |&board: &Board| Ok((board, self.image(toolchain, board, log)?));
+        let build = |&board: &Board| Ok((board, self.image(toolchain, board, kind)?));
         boards.iter().map(build).collect()
     }
 
     /// The image of a board.
-    fn image(&self, toolchain: &Toolchain, board: Board, log: Option<Level>) -> Result<Image, RenderError> {
-        let recipe = Recipe { log, ..self.recipe() };
+    fn image(&self, toolchain: &Toolchain, board: Board, kind: Kind) -> Result<Image, RenderError> {
+        let recipe = Recipe {
+            log: kind.log,
+            soft_float: kind.soft_float,
+            ..self.recipe()
+        };
         note(format!(
             "building the image for {} on {board} with {}",
             self.scene.name,

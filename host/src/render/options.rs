@@ -11,9 +11,9 @@ use fixedmath::I16F16;
 use tracer::unit::{Plan, Termination};
 use wire::boot::PixelOrder;
 
-use crate::firmware::Level;
 use crate::firmware::arithmetic::Arithmetic;
 use crate::firmware::board::Board;
+use crate::firmware::{Level, SoftFloat};
 use crate::platform::workspace::{self, NoWorkspace};
 
 /// A film of this many pixels takes half a gigabyte.
@@ -93,6 +93,9 @@ pub struct RenderOptions {
     /// Cycles that an access to literals and tables in instruction memory takes longer, for the count
     #[arg(long, value_name = "N", default_value = "0", requires = "cycles")]
     pub code_access: u32,
+    /// Compute in soft float instead of fixed point, by the profile's formulas, in an image that does not fit a core's memory
+    #[arg(long, value_name = "f32|f64", value_enum)]
+    pub soft_float: Option<SoftFloat>,
     /// UDP port of the collector [default: any free one]
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub port: Option<u16>,

@@ -11,12 +11,12 @@ use cycles::file::{self, FileError};
 use cycles::flow::{Flow, Recording};
 
 use super::options::{PictureOptions, Reference};
-use super::{Job, RenderError};
+use super::{Job, Kind, RenderError};
 use crate::collector::{self, CollectError, Collection, End, Progress};
 use crate::firmware::board::Board;
 use crate::firmware::plugin::{self, PluginError, Recorder};
 use crate::firmware::symbols::unit_renderer;
-use crate::firmware::{FirmwareError, Image};
+use crate::firmware::{FirmwareError, Image, SoftFloat};
 use crate::fleet::session::{Route, Session};
 use crate::fleet::{Core, QemuFleet};
 use crate::platform::interrupt;
@@ -85,9 +85,14 @@ pub struct Recorded {
 pub fn record(
     options: &PictureOptions,
     board: Board,
+    soft_float: Option<SoftFloat>,
     install: Install,
     interrupted: &AtomicBool,
 ) -> Result<Recorded, RecordError> {
+    let kind = Kind {
+        log: None,
+        soft_float,
+    };
     let job = Job::new(&PictureOptions {
         cores: 1,
         reference: Some(Reference::None),
@@ -104,7 +109,7 @@ pub fn record(
         return Err(RenderError::from(missing).into());
     };
     let plugin = plugin::ready(qemu)?;
-    let Image { elf, .. } = job.image(toolchain, board, None)?;
+    let Image { elf, .. } = job.image(toolchain, board, kind)?;
     let entry = unit_renderer(&elf).map_err(|error| RenderError::from(FirmwareError::from(error)))?;
     let socket = collector::bind(Ipv4Addr::LOCALHOST, 0).map_err(RenderError::from)?;
     let port = socket

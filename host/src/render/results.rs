@@ -13,6 +13,7 @@ use super::folder::{self, Written};
 use super::options::{Pixels, Reference};
 use super::{Job, Origin, RenderError, cycles};
 use crate::collector::{Collection, CoreRecord, End};
+use crate::firmware::SoftFloat;
 use crate::firmware::arithmetic::Arithmetic;
 use crate::firmware::board::INSTRUCTIONS_PER_TICK;
 use crate::image::openexr;
@@ -207,7 +208,7 @@ impl Results<'_> {
             board: self.origin.boards(),
             images: self.origin.images.clone(),
             backend: self.origin.backend.to_owned(),
-            profile: options.profile.name().to_owned(),
+            profile: SoftFloat::profile(options.profile, self.origin.soft_float),
             termination: options.termination.to_string(),
             pixels: options.pixels.name().to_owned(),
             seed: plan.seed,

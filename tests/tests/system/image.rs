@@ -28,6 +28,7 @@ fn recipe(profile: Arithmetic, needs: Capabilities) -> Recipe {
         profile,
         needs,
         log: None,
+        soft_float: None,
     }
 }
 

@@ -28,6 +28,7 @@ fn image(board: Board, profile: Arithmetic, log: Option<Level>) -> Image {
         profile,
         needs: Capabilities::ALL,
         log,
+        soft_float: None,
     };
     build(&toolchain(), board, &recipe).unwrap()
 }

@@ -19,4 +19,5 @@ mod places;
 mod processes;
 mod profile;
 mod size;
+mod soft_float;
 mod trace;

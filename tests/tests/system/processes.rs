@@ -241,6 +241,7 @@ fn the_collector_takes_cores_that_are_started_elsewhere() {
         profile: Arithmetic::Precise,
         needs: Capabilities::ALL,
         log: None,
+        soft_float: None,
     };
     let image = firmware::build(&toolchain(), Board::Versatilepb, &recipe).expect("an image");
     let elf = image.elf.to_str().expect("UTF-8");

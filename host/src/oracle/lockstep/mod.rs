@@ -4,35 +4,18 @@
 //! the two until rounding sends a path another way. It shares the tracer's formulas, so a wrong formula is not seen
 //! here; [`crate::oracle::reference`] is there for that.
 
-mod double;
-
-use std::marker::PhantomData;
-
-use fixedmath::I16F16;
 use rayon::prelude::*;
 use tracer::camera::Camera;
 use tracer::integrator::{Integrator, Path};
-use tracer::profile::{Profile, Quadratic};
+use tracer::profile::Profile;
 use tracer::scene::All;
 use tracer::unit::{Plan, walk};
 
 use crate::image::picture::{Estimate, Picture};
 use crate::scene::CompiledScene;
 
-pub use double::Double;
-
 /// Profile `P` in double precision: its random numbers, its formulas, exact arithmetic.
-#[derive(Clone, Copy, Debug)]
-pub struct Lockstep<P>(PhantomData<P>);
-
-impl<P: Profile> Profile for Lockstep<P> {
-    const NAME: &'static str = P::NAME;
-    const EPSILON: I16F16 = P::EPSILON;
-    const QUADRATIC: Quadratic = P::QUADRATIC;
-    type Numbers = Double;
-    type Random = P::Random;
-    type Hemisphere = P::Hemisphere;
-}
+pub type Lockstep<P> = floating::Lockstep<P, f64>;
 
 /// Renders `plan` in lockstep with profile `P`: every pass, on all host cores.
 ///

@@ -1,0 +1,240 @@
+//! The tracer's arithmetic in a floating-point format.
+
+use core::f64::consts::TAU;
+use core::marker::PhantomData;
+
+use fixedmath::{I2F30, I4F28, I16F16, I32F32, U0F32, U16F16, U19F45, U32F32};
+use tracer::arithmetic::{Directions, Formats, Sampling};
+use tracer::camera::FilmNumbers;
+use tracer::geometry::sphere::{Reciprocal, SphereNumbers};
+use tracer::material::{DielectricNumbers, RadianceNumbers};
+
+use crate::Float;
+
+/// `F` for every quantity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Floating<F>(PhantomData<F>);
+
+const TWO_TO_30: f64 = (1u64 << 30) as f64;
+const TWO_TO_32: f64 = (1u64 << 32) as f64;
+
+fn dot<F: Float>(a: [F; 3], b: [F; 3]) -> F {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn not_negative<F: Float>(value: F) -> F {
+    if value > F::ZERO { value } else { F::ZERO }
+}
+
+fn fraction<F: Float>(fraction: U0F32) -> F {
+    F::of_u32(fraction.to_bits()) * F::of(1.0 / TWO_TO_32)
+}
+
+impl<F: Float> Formats for Floating<F> {
+    type Length = F;
+    type Unit = F;
+
+    const NOTHING: F = F::ZERO;
+    const FAR: F = F::FAR;
+    const ZERO: F = F::ZERO;
+    const ONE: F = F::ONE;
+
+    #[inline]
+    fn length(length: I16F16) -> F {
+        F::of_i32(length.to_bits()) * F::of(1.0 / 65536.0)
+    }
+
+    #[inline]
+    fn unit(component: I2F30) -> F {
+        F::of_i32(component.to_bits()) * F::of(1.0 / TWO_TO_30)
+    }
+
+    #[inline]
+    fn scale(l: F, u: F) -> F {
+        l * u
+    }
+}
+
+impl<F: Float> Directions for Floating<F> {
+    #[inline]
+    fn cosine(a: [F; 3], b: [F; 3]) -> F {
+        dot(a, b)
+    }
+
+    #[inline]
+    fn times(a: F, b: F) -> F {
+        a * b
+    }
+
+    #[inline]
+    fn normalised(v: [F; 3], otherwise: [F; 3]) -> [F; 3] {
+        let square = dot(v, v);
+        if square == F::ZERO {
+            return otherwise;
+        }
+        let reciprocal = F::ONE / square.root();
+        v.map(|component| component * reciprocal)
+    }
+
+    #[inline]
+    fn bisector(a: [F; 3], b: [F; 3], otherwise: [F; 3]) -> [F; 3] {
+        Self::normalised([a[0] + b[0], a[1] + b[1], a[2] + b[2]], otherwise)
+    }
+
+    #[inline]
+    fn renormalised(v: [F; 3]) -> [F; 3] {
+        Self::normalised(v, v)
+    }
+}
+
+impl<F: Float> Sampling for Floating<F> {
+    #[inline]
+    fn cos_sin(turn: U0F32) -> (F, F) {
+        let (sine, cosine) = (fraction::<F>(turn) * F::of(TAU)).sine_cosine();
+        (cosine, sine)
+    }
+
+    #[inline]
+    fn signed(value: U0F32) -> F {
+        fraction::<F>(value) * F::of(2.0) - F::ONE
+    }
+
+    #[inline]
+    fn root_of(value: U0F32) -> F {
+        fraction::<F>(value).root()
+    }
+
+    #[inline]
+    fn complement(z: F) -> F {
+        (F::ONE - z * z).root()
+    }
+
+    #[inline]
+    fn below(value: U0F32, probability: F) -> bool {
+        fraction::<F>(value) < probability
+    }
+}
+
+impl<F: Float> FilmNumbers for Floating<F> {
+    #[inline]
+    fn across(k: u32, jitter: F, subpixels: u32, _reciprocal: U19F45) -> F {
+        (F::of_u32(k) + F::of(0.5) + jitter) / F::of_u32(subpixels) - F::of(0.5)
+    }
+
+    #[inline]
+    fn combine(forward: [F; 3], a: F, right: [F; 3], b: F, up: [F; 3]) -> [F; 3] {
+        [0, 1, 2].map(|i| forward[i] + a * right[i] + b * up[i])
+    }
+}
+
+impl<F: Float> SphereNumbers for Floating<F> {
+    type Square = F;
+    type Projection = F;
+
+    const NO_SQUARE: F = F::ZERO;
+    const GRAZING: F = F::ZERO;
+
+    #[inline]
+    fn square(square: I32F32) -> F {
+        F::of_i64(square.to_bits()) * F::of(1.0 / TWO_TO_32)
+    }
+
+    #[inline]
+    fn dot(a: [F; 3], b: [F; 3]) -> F {
+        dot(a, b)
+    }
+
+    #[inline]
+    fn product(a: F, b: F) -> F {
+        a * b
+    }
+
+    #[inline]
+    fn root(square: F) -> F {
+        not_negative(square).root()
+    }
+
+    #[inline]
+    fn project(v: [F; 3], d: [F; 3]) -> F {
+        dot(v, d)
+    }
+
+    #[inline]
+    fn length_of(projection: F) -> F {
+        projection
+    }
+
+    #[inline]
+    fn squared(projection: F) -> F {
+        projection * projection
+    }
+
+    #[inline]
+    fn normal(p: [F; 3], radius: I16F16, _reciprocal: Reciprocal) -> [F; 3] {
+        let reciprocal = F::ONE / Self::length(radius);
+        p.map(|component| component * reciprocal)
+    }
+}
+
+impl<F: Float> DielectricNumbers for Floating<F> {
+    type Ratio = F;
+
+    #[inline]
+    fn ratio(ratio: I4F28) -> F {
+        F::of_i32(ratio.to_bits()) * F::of(4.0 / TWO_TO_30)
+    }
+
+    #[inline]
+    fn ratio_squared(ratio: F) -> F {
+        ratio * ratio
+    }
+
+    #[inline]
+    fn refracted_square(cosine: F, ratio_squared: F) -> F {
+        F::ONE - ratio_squared * (F::ONE - cosine * cosine)
+    }
+
+    #[inline]
+    fn is_refracted(square: F) -> bool {
+        square >= F::ZERO
+    }
+
+    #[inline]
+    fn root_of_ratio(square: F) -> F {
+        square.root()
+    }
+
+    #[inline]
+    fn refract(ratio: F, d: [F; 3], cosine: F, refracted: F, n: [F; 3]) -> [F; 3] {
+        let bend = ratio * cosine - refracted;
+        [0, 1, 2].map(|i| ratio * d[i] + bend * n[i])
+    }
+}
+
+impl<F: Float> RadianceNumbers for Floating<F> {
+    type Weight = F;
+    type Radiance = F;
+
+    const FULL: F = F::ONE;
+    const DARK: F = F::ZERO;
+
+    #[inline]
+    fn weight(reflectance: U0F32) -> F {
+        F::of_u32(reflectance.to_bits()) * F::of(1.0 / (TWO_TO_32 - 1.0))
+    }
+
+    #[inline]
+    fn attenuate(throughput: F, reflectance: F) -> F {
+        throughput * reflectance
+    }
+
+    #[inline]
+    fn emitted(throughput: F, emission: U16F16) -> F {
+        throughput * (F::of_u32(emission.to_bits()) * F::of(1.0 / 65536.0))
+    }
+
+    #[inline]
+    fn film_sum(sum: F) -> U32F32 {
+        U32F32::from_bits((sum * F::of(TWO_TO_32)).to_u64())
+    }
+}

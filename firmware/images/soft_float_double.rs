@@ -1,0 +1,10 @@
+//! A core like any other, whose tracer computes in soft `f64`: what a render costs without fixed point.
+#![no_std]
+#![no_main]
+
+mod soft_float;
+
+#[board::entry]
+fn start() -> ! {
+    soft_float::run::<f64>()
+}
