@@ -55,7 +55,7 @@ pub struct Block {
     pub instructions: Vec<Instruction>,
     /// How often each really accessed memory, where it may not have or loads; else 0.
     pub passed: Vec<u64>,
-    /// How often that began in instruction memory.
+    /// How many words of instruction memory it has accessed.
     pub from_code: Vec<u64>,
 }
 

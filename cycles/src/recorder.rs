@@ -129,10 +129,14 @@ impl Recorder {
     #[inline]
     pub fn accessed(&mut self, number: usize, place: usize, address: u32) {
         let seen = &mut self.seen[number];
-        if self.returns_to.is_some() && seen.accessed[place] != seen.executions {
+        // What runs apart from its block, for a device, is in no call's execution.
+        if self.returns_to.is_none() || seen.executions == 0 {
+            return;
+        }
+        seen.block.from_code[place] += u64::from(address < self.wanted.code_end);
+        if seen.accessed[place] != seen.executions {
             seen.accessed[place] = seen.executions;
             seen.block.passed[place] += 1;
-            seen.block.from_code[place] += u64::from(address < self.wanted.code_end);
         }
     }
 
