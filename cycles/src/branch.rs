@@ -48,7 +48,7 @@ fn arm(instruction: &Instruction) -> Next {
         }
         _ if word >> 28 == 15 => Next::Following,
         // BX and BLX.
-        0 if word & 0x0fff_ffd0 == 0x012f_ff10 => Next::Anywhere,
+        0 if word & 0x0ff0_00d0 == 0x0120_0010 => Next::Anywhere,
         0 if word & 0x90 == 0x90 || word & 0x0190_0000 == 0x0100_0000 => Next::Following,
         // Comparisons have no destination.
         0 | 1 if to_pc && word >> 23 & 3 != 2 => Next::Anywhere,

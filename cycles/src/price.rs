@@ -273,3 +273,44 @@ fn part((share, whole): (u64, u64), taken: u64, count: u64) -> u64 {
         |executions: u64| (u128::from(executions) * u128::from(share) / u128::from(whole.max(1))) as u64;
     upto(taken + count) - upto(taken)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::branch::{self, Next};
+
+    /// All upper halfwords with some lower ones: whoever follows the flow and whoever prices it must agree on what a jump is.
+    #[test]
+    fn what_may_go_elsewhere_is_priced_as_a_jump() {
+        let mut differ = Vec::new();
+        for upper in 0..=u16::MAX {
+            for lower in [
+                0x0000_u16, 0x0001, 0x0f10, 0x1234, 0x4567, 0x8090, 0x80ff, 0xb5d7, 0xf000, 0xf012, 0xf093,
+                0xff1e, 0xff3e,
+            ] {
+                for isa in [Isa::Arm, Isa::Thumb] {
+                    let bytes = match isa {
+                        Isa::Arm => [lower, upper],
+                        Isa::Thumb => [upper, lower],
+                    };
+                    let bytes: Vec<u8> = bytes.iter().flat_map(|half| half.to_le_bytes()).collect();
+                    let instruction = Instruction::read(isa, 0x100, &bytes).expect("four bytes");
+                    let goes = branch::next(isa, &instruction) != Next::Following;
+                    let timing = match isa {
+                        Isa::Arm => arm9::Arm9::decode(&[instruction]),
+                        Isa::Thumb => cortex_m3::CortexM3::decode(&[instruction]),
+                    };
+                    if timing[0].jumps != goes {
+                        differ.push((isa, format!("{:08x}", instruction.encoding), goes));
+                    }
+                }
+            }
+        }
+        assert!(
+            differ.is_empty(),
+            "{} differ, the first {:?}",
+            differ.len(),
+            differ.first()
+        );
+    }
+}

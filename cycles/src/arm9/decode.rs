@@ -34,6 +34,8 @@ fn conditional(word: u32) -> Timing {
             writes: if word >> 24 & 1 == 1 { bit(14) } else { 0 },
             ..branch(3, 0)
         },
+        // SVC.
+        7 if word >> 24 & 1 == 1 => branch(3, 0),
         _ => Timing::new(Class::Other, 1, 0, 0),
     }
 }
@@ -85,7 +87,7 @@ fn miscellaneous(word: u32) -> Timing {
         (0, 1 | 3) => to_status(word, bit(a)),
         (0, _) => Timing::new(Class::Other, 2, 0, bit(to)),
         (1, 3) => Timing::new(Class::Alu, 1, bit(a), bit(to)),
-        (1 | 3, _) => branch(3, bit(a)),
+        (1 | 3, 1) => branch(3, bit(a)),
         (5, _) => Timing {
             late: vec![(to, 1)],
             ..Timing::new(Class::Alu, 1, bit(a) | bit(c), 0)

@@ -113,7 +113,8 @@ fn short(word: u32) -> Timing {
         11 => short_miscellaneous(word),
         12 => many(word >> 11 & 1 == 1, word as u16 & 0xff, bit(upper)),
         13 if word >> 8 & 15 < 14 => may_jump(1),
-        13 => plain(Class::Other),
+        // What is undefined, and SVC.
+        13 if word >> 8 & 15 == 14 => plain(Class::Other),
         _ => jump(1),
     }
 }
@@ -176,7 +177,7 @@ fn double_or_table(first: u32, second: u32) -> Timing {
         return Timing::branch(Range::exactly(3).plus(REFILL), base | bit(second & 15));
     }
     if first & 0xff60 == 0xe840 || first & 0xffe0 == 0xe8c0 {
-        return load(field(second, 12), Range::exactly(2), base);
+        return Timing::new(Class::Load, 2, base, bit(field(second, 12)));
     }
     let both = bit(field(second, 12)) | bit(field(second, 8));
     match loads {
@@ -215,7 +216,10 @@ fn long_access(first: u32, second: u32) -> Timing {
     let to = field(second, 12);
     let by_register = first >> 7 & 1 == 0 && second & 0x0fc0 == 0 && base != PC;
     let address = bit(base) | if by_register { bit(second & 15) } else { 0 };
+    let is_word = first & 0x0160 == 0x0040;
     match (first >> 4 & 1, base) {
+        // A hint for a cache that there is none of.
+        (1, _) if to == PC && !is_word => plain(Class::Other),
         (1, PC) => load(to, LITERAL, 0),
         (1, _) => load(to, Range::exactly(2), address),
         _ => Timing::new(Class::Store, if by_register { 2 } else { 1 }, address, 0),
