@@ -87,7 +87,8 @@ impl Recorder {
             Isa::Arm => "arm",
             Isa::Thumb => "thumb",
         };
-        option.push(format!(",isa={isa},code_end={:#x}", board.itcm().end));
+        // Code is all that is below data: an image in soft float has more of it than a core.
+        option.push(format!(",isa={isa},code_end={:#x}", board.dtcm().start));
         for entry in &self.entries {
             option.push(format!(",entry={entry:#x}"));
         }
@@ -190,7 +191,7 @@ mod tests {
         let [_, option] = recorder.words(Board::Mps2An385);
         assert_eq!(
             option.to_str(),
-            Some("file=a,,b.so,isa=thumb,code_end=0x8000,entry=0x100,entry=0x200,each=on,out=out,,1")
+            Some("file=a,,b.so,isa=thumb,code_end=0x20000000,entry=0x100,entry=0x200,each=on,out=out,,1")
         );
     }
 }

@@ -4,11 +4,13 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::hash::Hash;
 
 use cycles::Priced;
+use cycles::flow::Flow;
 
 use super::calls::Node;
 use super::code::{Code, Name};
 use super::cost::Cost;
 use super::run::{Function, Named};
+use crate::render::report::BlindSpot;
 
 /// What the instruction at each address costs.
 pub(super) fn by_address(prices: &[Priced]) -> BTreeMap<u32, Cost> {
@@ -25,6 +27,19 @@ pub(super) fn total<'a>(costs: impl Iterator<Item = &'a Cost>) -> Cost {
         sum += cost;
         sum
     })
+}
+
+/// What the price does not see, as shares of all cycles.
+pub(super) fn blind_spots(flow: &Flow, total: Cost) -> Vec<BlindSpot> {
+    let share = |cycles: u64| cycles as f64 / total.cycles as f64;
+    let spots = cycles::blind_spots(flow).into_iter();
+    spots
+        .map(|spot| BlindSpot {
+            what: spot.what.to_owned(),
+            less: share(spot.less),
+            more: share(spot.more),
+        })
+        .collect()
 }
 
 /// By class of instruction.

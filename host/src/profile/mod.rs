@@ -215,6 +215,7 @@ fn account(options: &ProfileOptions, recorded: &Recorded, blocks: usize) -> Resu
         total,
         cycles_at_least: bound(Estimate::Low),
         cycles_at_most: bound(Estimate::High),
+        blind_spots: account::blind_spots(flow, total),
         cycles_per_sample: a(total.cycles, *samples),
         instructions_per_sample: a(total.instructions, *samples),
         cycles_per_ray: a(total.cycles, *rays),

@@ -6,6 +6,7 @@ use std::{fs, io};
 use serde::{Deserialize, Serialize};
 
 use super::cost::Cost;
+use crate::render::report::BlindSpot;
 
 /// The version of the file's form. Another is not compared.
 pub const FORMAT: u32 = 1;
@@ -51,6 +52,9 @@ pub struct Run {
     pub cycles_at_least: u64,
     /// The upper one.
     pub cycles_at_most: u64,
+    /// What the model does not see, and the worst that each can do; a run of before there was such a list has none.
+    #[serde(default)]
+    pub blind_spots: Vec<BlindSpot>,
     /// Cycles a sample.
     pub cycles_per_sample: f64,
     /// Instructions a sample.
@@ -260,6 +264,18 @@ pub(super) mod tests {
             total: cost(all),
             cycles_at_least: all,
             cycles_at_most: all + 4,
+            blind_spots: vec![
+                BlindSpot {
+                    what: "a great thing".to_owned(),
+                    less: 0.0,
+                    more: 0.01,
+                },
+                BlindSpot {
+                    what: "nothing to speak of".to_owned(),
+                    less: 1e-7,
+                    more: 0.0,
+                },
+            ],
             cycles_per_sample: all as f64 / 4.0,
             instructions_per_sample: (all / 2) as f64 / 4.0,
             cycles_per_ray: all as f64 / 8.0,
@@ -289,6 +305,10 @@ pub(super) mod tests {
         let json = serde_json::to_string_pretty(&run).expect("JSON");
         fs::write(&file, &json).expect("a file");
         assert_eq!(Run::read(&file).expect("the run"), run);
+
+        let older = json.replace("blind_spots", "unknown_then");
+        fs::write(&file, &older).expect("a file");
+        assert_eq!(Run::read(&file).expect("the run").blind_spots, []);
 
         let newer = json.replace("\"format\": 1", "\"format\": 2");
         // Of another version nothing but its number need be understood.

@@ -3,6 +3,7 @@
 use super::brief::brief;
 use super::cost::Cost;
 use super::run::{Block, Function, Named, Run};
+use crate::render::report::BlindSpot;
 
 /// How much is shown of a profile.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::Args)]
@@ -20,7 +21,9 @@ pub struct Shown {
 
 /// The whole table.
 pub fn table(run: &Run, shown: Shown) -> String {
-    let mut parts = vec![head(run), functions(run, shown.functions), classes(run)];
+    let mut parts = vec![head(run)];
+    parts.extend(unseen(run));
+    parts.extend([functions(run, shown.functions), classes(run)]);
     if shown.lines > 0 {
         parts.push(lines(run, shown.lines));
     }
@@ -68,6 +71,22 @@ fn head(run: &Run) -> String {
         row("instructions", total.instructions),
     ]
     .join("\n")
+}
+
+/// What may make the cycles more or fewer, if that shows in a hundred thousandth of them.
+fn unseen(run: &Run) -> Option<String> {
+    let worth_a_line = |spot: &&BlindSpot| spot.less + spot.more > 1e-5;
+    let mut lines = vec!["what the model does not see, at worst:".to_owned()];
+    lines.extend(run.blind_spots.iter().filter(worth_a_line).map(|spot| {
+        let (less, more) = (100.0 * spot.less, 100.0 * spot.more);
+        format!(
+            "{:>12} {:>12}  {}",
+            format!("-{less:.3} %"),
+            format!("+{more:.3} %"),
+            spot.what
+        )
+    }));
+    (lines.len() > 1).then(|| lines.join("\n"))
 }
 
 fn functions(run: &Run, count: usize) -> String {
@@ -206,6 +225,7 @@ mod tests {
         let all = shown(9, 9, 9);
         for expected in [
             "2.00 rays a sample",
+            "    -0.000 %     +1.000 %  a great thing\n\nby function",
             "        75.0    75.0 %         37.5          0.5         75.0    75.0 %  <A as B>::c\n",
             "block of d: 2.50 times a sample, 25.0 cycles a sample (25.0 %)",
             "0x000028a4  umull r1, r0, r6, r7                         4.00     1.00  kernel.rs:72",
