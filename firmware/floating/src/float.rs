@@ -32,6 +32,8 @@ pub trait Float:
     fn of_u32(number: u32) -> Self;
     /// A long number.
     fn of_i64(number: i64) -> Self;
+    /// A whole number that has been converted, over 2^`bits`: exactly, and without a product, which is dear in soft float.
+    fn over_power(self, bits: u8) -> Self;
     /// The whole part of what is not negative.
     fn to_u64(self) -> u64;
     /// The root, correctly rounded.
@@ -41,7 +43,7 @@ pub trait Float:
 }
 
 macro_rules! float {
-    ($format:ident, $root:path, $sine_cosine:path) => {
+    ($format:ident, $bits:ident, $root:path, $sine_cosine:path) => {
         impl Float for $format {
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;
@@ -68,6 +70,15 @@ macro_rules! float {
             }
 
             #[inline]
+            fn over_power(self, bits: u8) -> Self {
+                match self.to_bits() {
+                    0 => self,
+                    // A whole number's exponent is far from the least there is.
+                    number => Self::from_bits(number - ($bits::from(bits) << (Self::MANTISSA_DIGITS - 1))),
+                }
+            }
+
+            #[inline]
             fn to_u64(self) -> u64 {
                 self as u64
             }
@@ -85,5 +96,26 @@ macro_rules! float {
     };
 }
 
-float!(f32, libm::sqrtf, libm::sincosf);
-float!(f64, libm::sqrt, libm::sincos);
+float!(f32, u32, libm::sqrtf, libm::sincosf);
+float!(f64, u64, libm::sqrt, libm::sincos);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_power_of_two_divides_exactly() {
+        for number in [0, 1, -1, 3, -65_536, 16_777_215, i32::MIN, i32::MAX] {
+            for bits in [0, 1, 16, 28, 30, 32] {
+                let power = f64::from(bits).exp2();
+                assert_eq!(f64::of_i32(number).over_power(bits), f64::from(number) / power);
+                assert_eq!(f32::of_i32(number).over_power(bits), number as f32 / power as f32);
+            }
+        }
+        let square = i64::MIN / 3;
+        assert_eq!(
+            f64::of_i64(square).over_power(32),
+            square as f64 / 4_294_967_296.0
+        );
+    }
+}

@@ -2,7 +2,7 @@
 //!
 //! Over `f64` it is the host's lockstep oracle. Over soft `f32` and `f64` on a core it is what fixed point is measured against, in images
 //! of their own: no render's image depends on this crate. The scene's records stay in fixed point, and are converted as they are read.
-#![no_std]
+#![cfg_attr(not(test), no_std)]
 #![forbid(unsafe_code)]
 
 mod float;

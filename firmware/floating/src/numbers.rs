@@ -15,7 +15,6 @@ use crate::Float;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Floating<F>(PhantomData<F>);
 
-const TWO_TO_30: f64 = (1u64 << 30) as f64;
 const TWO_TO_32: f64 = (1u64 << 32) as f64;
 
 fn dot<F: Float>(a: [F; 3], b: [F; 3]) -> F {
@@ -27,7 +26,7 @@ fn not_negative<F: Float>(value: F) -> F {
 }
 
 fn fraction<F: Float>(fraction: U0F32) -> F {
-    F::of_u32(fraction.to_bits()) * F::of(1.0 / TWO_TO_32)
+    F::of_u32(fraction.to_bits()).over_power(32)
 }
 
 impl<F: Float> Formats for Floating<F> {
@@ -41,12 +40,12 @@ impl<F: Float> Formats for Floating<F> {
 
     #[inline]
     fn length(length: I16F16) -> F {
-        F::of_i32(length.to_bits()) * F::of(1.0 / 65536.0)
+        F::of_i32(length.to_bits()).over_power(16)
     }
 
     #[inline]
     fn unit(component: I2F30) -> F {
-        F::of_i32(component.to_bits()) * F::of(1.0 / TWO_TO_30)
+        F::of_i32(component.to_bits()).over_power(30)
     }
 
     #[inline]
@@ -136,7 +135,7 @@ impl<F: Float> SphereNumbers for Floating<F> {
 
     #[inline]
     fn square(square: I32F32) -> F {
-        F::of_i64(square.to_bits()) * F::of(1.0 / TWO_TO_32)
+        F::of_i64(square.to_bits()).over_power(32)
     }
 
     #[inline]
@@ -181,7 +180,7 @@ impl<F: Float> DielectricNumbers for Floating<F> {
 
     #[inline]
     fn ratio(ratio: I4F28) -> F {
-        F::of_i32(ratio.to_bits()) * F::of(4.0 / TWO_TO_30)
+        F::of_i32(ratio.to_bits()).over_power(28)
     }
 
     #[inline]
@@ -230,7 +229,7 @@ impl<F: Float> RadianceNumbers for Floating<F> {
 
     #[inline]
     fn emitted(throughput: F, emission: U16F16) -> F {
-        throughput * (F::of_u32(emission.to_bits()) * F::of(1.0 / 65536.0))
+        throughput * F::of_u32(emission.to_bits()).over_power(16)
     }
 
     #[inline]
