@@ -8,6 +8,8 @@ use std::process::{Child, Command, ExitStatus, Output, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use rustix::process::{Pid, Signal, kill_process};
+
 use super::core::Core;
 use super::log::FleetLog;
 use super::{Fleet, FleetError, LAST_LINES, Patience, Policy, RESTARTS, RUNNING, unusable};
@@ -21,8 +23,8 @@ use crate::platform::setup;
 const MEASURE_EVERY: Duration = Duration::from_millis(250);
 /// Time between two looks whether a process that is to end has done so.
 const LOOK_EVERY: Duration = Duration::from_millis(5);
-/// How long cores that have been told to stop may take until their recordings are written.
-const WRITTEN_WITHIN: Duration = Duration::from_secs(30);
+/// How long cores that have been told to end may take for it, with what is written then.
+const END_WITHIN: Duration = Duration::from_secs(5);
 /// The exit codes of a core that has run into a fault of its program: a panic, and an exception of the processor. They are
 /// `runtime::ExitCode`'s; what it says with another code it has thought about, and would say again.
 const FAILED: [i32; 2] = [3, 4];
@@ -146,6 +148,19 @@ impl QemuFleet {
     pub fn debugged(mut self) -> Self {
         self.debugged = true;
         self
+    }
+
+    /// Ends the cores so that their recordings are written, which QEMU does at its own end. Of one that does not end so, there is
+    /// none, which tells.
+    fn let_recorders_write(&mut self) {
+        if self.await_ends(END_WITHIN).is_err() {
+            // One that came late to its collector has not been told to stop, and is idle.
+            for guest in self.guests.iter().filter(|guest| guest.ended.is_none()) {
+                // The only error is that it has ended meanwhile.
+                let _gone = kill_process(Pid::from_child(&guest.child), Signal::TERM);
+            }
+            let _how = self.await_ends(END_WITHIN);
+        }
     }
 
     /// Waits for the ends of cores that have been told to stop, and says how the first ended that did not end well.
@@ -293,8 +308,7 @@ impl Fleet for QemuFleet {
 
     fn end(&mut self) -> Vec<String> {
         if self.is_recorded() {
-            // Their recordings are written when they end by themselves. Of one that does not, there is none, which tells.
-            let _how = self.await_ends(WRITTEN_WITHIN);
+            self.let_recorders_write();
         }
         self.kill();
         self.log.as_mut().map(FleetLog::end).unwrap_or_default()
