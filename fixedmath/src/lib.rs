@@ -7,6 +7,7 @@
 //! | room | what |
 //! | --- | --- |
 //! | [`product`] | products with one rounding, dot products in 64 bits |
+//! | [`halves`] | products of 16-bit numbers, two in a word |
 //! | [`division`] | quotients and reciprocals of 16:16 |
 //! | [`root`] | square roots and reciprocal square roots |
 //! | [`mod@unit`] | lengths of vectors, and directions in 2:30 |
@@ -36,6 +37,7 @@ pub mod angle;
 mod assembly;
 pub mod division;
 pub mod exponential;
+pub mod halves;
 pub mod product;
 pub mod random;
 pub mod root;

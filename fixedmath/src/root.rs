@@ -14,7 +14,7 @@ use fixed::types::{I2F30, I16F16, I32F32, I48F16};
 
 mod kernel;
 
-use kernel::{floor_of_normal, near_reciprocal, normal_word, root_from_below, rough};
+use kernel::{fine, floor_of_normal, near, near_reciprocal, normal_word, root_from_below, rough};
 pub(crate) use kernel::{normalised, reciprocal};
 
 /// Square root of 16:16 by restoring steps, rounded down: within 1 ulp below. A negative argument gives 0.
@@ -119,6 +119,26 @@ pub const fn checked_of_square(x: I32F32) -> Option<I16F16> {
     } else {
         Some(of_square(x))
     }
+}
+
+/// [`of_square`], quicker: within 1.2 ulp for squares from 2^11 to 2^28.
+///
+/// Cost: 54 instructions.
+#[inline]
+pub const fn near_square(x: I32F32) -> I16F16 {
+    let whole = (x.to_bits() >> 32) as u32;
+    if whole.wrapping_sub(1 << 11) < (1 << 28) - (1 << 11) {
+        I16F16::from_bits(near(x.to_bits() as u64) as i32)
+    } else {
+        of_square_apart(x)
+    }
+}
+
+/// Kept apart from what happens more often.
+#[cold]
+#[inline(never)]
+const fn of_square_apart(x: I32F32) -> I16F16 {
+    of_square(x)
 }
 
 /// Square root of 48:16 in 16:16, to the nearest: within 0.5 ulp. A negative argument gives 0; a root past 32,767
@@ -237,7 +257,7 @@ pub const fn checked_of_fraction(x: I2F30) -> Option<I2F30> {
 #[inline]
 pub(crate) const fn of_share(share: u32) -> u32 {
     let (normal, shift) = normal_word(share);
-    rough(normal) >> shift
+    fine(normal) >> shift
 }
 
 /// Twice the square root of a share in 0:64, not 0 and below 1/4, in 2:30: within 8 ulp of 2^-30.

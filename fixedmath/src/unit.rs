@@ -2,7 +2,7 @@
 
 use fixed::types::{I2F30, I16F16};
 
-use crate::{assembly, root};
+use crate::{assembly, division, root};
 
 /// A vector's squared length in 64 bits. Three squares of 2^62 fit without a sign.
 #[inline]
@@ -138,6 +138,32 @@ fn direction(v: [i32; 3], square: u64) -> [I2F30; 3] {
 fn stretched(component: i32, inverse: i32) -> I2F30 {
     I2F30::from_bits(assembly::rounded::<31>(component as i64 * inverse as i64))
 }
+
+/// The unit vector that lies to `axis` as `v` does to (0, 0, 1), or to its opposite in a mirrored frame: for a `v` whose distribution is
+/// even around that axis. Each component within 4 ulp of 2^-30.
+///
+/// T. Duff et al., "Building an Orthonormal Basis, Revisited", 2017, with both tangents turned by the sign of z.
+///
+/// Cost: 55 instructions.
+#[inline]
+pub fn around(axis: [I2F30; 3], v: [I2F30; 3]) -> [I2F30; 3] {
+    let ([x, y, z], [u, v, w]) = (unit_bits(axis), unit_bits(v));
+    let product = |a: i32, b: i32| a as i64 * b as i64;
+    let across = assembly::rounded::<30>(product(x, u) + product(y, v));
+    // 1 / (1 + |z|) in 1:31. Rounding may have left |z| at 1 or above.
+    let height = ONE.saturating_add(z.unsigned_abs() as i32) as u32;
+    let inverse = (division::reciprocal_of_normal(height << 1) >> 1) as i32;
+    let along = w - assembly::rounded::<31>(product(across, inverse));
+    let sign = z >> 31;
+    [
+        I2F30::from_bits(u + assembly::rounded::<30>(product(x, along))),
+        I2F30::from_bits(v + assembly::rounded::<30>(product(y, along))),
+        I2F30::from_bits(assembly::rounded::<30>(product(z, w)) - ((across ^ sign) - sign)),
+    ]
+}
+
+/// 1 in 2:30.
+const ONE: i32 = 1 << 30;
 
 /// The squared length from which on [`renormalised`] gives zero: 3, in 4:60.
 const NOTHING_LEFT: u64 = 3 << 60;

@@ -1,5 +1,5 @@
 //! Angles and unit vectors against double precision.
-use fixedmath::{I2F30, I16F16, angle, random::Lcg64, unit};
+use fixedmath::{I2F30, I16F16, angle, random::Lcg64, unit, warp};
 use std::f64::consts::TAU;
 
 fn turns() -> impl Iterator<Item = u32> {
@@ -234,4 +234,51 @@ fn renormalising_the_longest_and_the_zero_vector() {
         unit::checked_renormalised(nearly),
         Some(unit::renormalised(nearly))
     );
+}
+
+/// A frame's three axes, by what `around` makes of (1, 0, 0), (0, 1, 0) and (0, 0, 1): orthonormal, the third the axis itself; and any
+/// vector keeps its length and its cosine with it. For axes everywhere, next to the poles and next to the equator.
+#[test]
+fn a_frame_is_orthonormal_around_every_axis() {
+    let mut random = Lcg64::new(15);
+    let mut unit = move || {
+        let tilt = random.next_fraction() >> (random.next_fraction() >> 27);
+        unit::normalised(warp::sphere(tilt, random.next_fraction()))
+    };
+    let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    let real = |v: [I2F30; 3]| v.map(|c| c.to_num::<f64>());
+    let (zero, one) = (I2F30::ZERO, I2F30::ONE);
+    let mut worst = 0f64;
+    let ulp = I2F30::from_bits(1);
+    for pole in [one, -one, one - ulp, one + ulp, one + ulp + ulp, -one - ulp] {
+        for [x, y] in [
+            [zero, zero],
+            [ulp, -ulp],
+            [I2F30::from_bits(20_000), I2F30::from_bits(-12_345)],
+        ] {
+            let across = real(unit::around([x, y, pole], [one, zero, zero]));
+            worst = worst
+                .max((dot(across, across) - 1.0).abs())
+                .max(dot(across, real([x, y, pole])).abs());
+        }
+    }
+    for turn in 0..500_000 {
+        let [x, y, z] = unit();
+        let axis = [[x, y, z], [x, y, -z], [z, x, y], [y, -z, x]][turn % 4];
+        let frame =
+            [[one, zero, zero], [zero, one, zero], [zero, zero, one]].map(|v| real(unit::around(axis, v)));
+        for (i, a) in frame.iter().enumerate() {
+            for (j, b) in frame.iter().enumerate() {
+                worst = worst.max((dot(*a, *b) - f64::from(u8::from(i == j))).abs());
+            }
+        }
+        worst = worst.max((dot(frame[2], real(axis)) - 1.0).abs());
+        let v = unit();
+        let turned = real(unit::around(axis, v));
+        worst = worst.max((dot(turned, turned) - 1.0).abs());
+        worst = worst.max((dot(turned, real(axis)) - v[2].to_num::<f64>()).abs());
+    }
+    // In units of 2^-30; an axis itself is of unit length to 4.
+    let ulp = worst * 1_073_741_824.0;
+    assert!((2.0..=16.0).contains(&ulp), "{ulp} ulp of 2^-30");
 }

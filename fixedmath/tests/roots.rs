@@ -137,6 +137,37 @@ fn roots_of_each_format_are_correctly_rounded_or_refused() {
     }
 }
 
+/// From a grazing wall's square to the largest: at every magnitude, dense, at both ends of each, and around squares. Elsewhere it is
+/// the nearest.
+#[test]
+fn near_roots_stay_within_their_bound() {
+    let error = |v: u64| {
+        let x = I32F32::from_bits(v as i64);
+        f64::from(root::near_square(x).to_bits()) - (v as f64).sqrt()
+    };
+    let (mut low, mut high) = (0f64, 0f64);
+    for magnitude in 43..60 {
+        let from = 1u64 << magnitude;
+        let step = from >> 17;
+        let around = |v: u64| [v - 1, v, v + 1, v + v.isqrt(), v + v.isqrt() + 1];
+        let squares = (0..1000).map(|k| (from + k * (from / 1000)).isqrt().pow(2));
+        let dense = (0..1 << 17).map(|k| from + k * step + (k * 0x9e37_79b9) % step);
+        let ends = [from, 2 * from - 1].into_iter();
+        for v in dense.chain(ends).chain(squares.flat_map(around)) {
+            let error = error(v.clamp(1 << 43, (1 << 60) - 1));
+            (low, high) = (low.min(error), high.max(error));
+        }
+    }
+    assert!(
+        low > -1.2 && high < 1.2 && high - low > 1.0,
+        "{low} to {high} ulp"
+    );
+    for bits in [-1, 0, 1, (1 << 43) - 1, 1 << 60, i64::MAX] {
+        let x = I32F32::from_bits(bits);
+        assert_eq!(root::near_square(x), root::of_square(x));
+    }
+}
+
 #[test]
 fn reciprocal_roots_stay_within_their_bound() {
     let mut worst = 0f64;

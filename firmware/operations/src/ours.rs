@@ -91,6 +91,7 @@ pub(crate) fn roots(visitor: &mut impl Visitor) {
     );
     rows!(visitor, RootOfSquare:
         Ours "root::of_square" |x| root::of_square(x);
+        Ours "root::near_square" |x| root::near_square(x);
     );
     rows!(visitor, RootOfInteger:
         Ours "root::nearest" |x| root::nearest(x);

@@ -15,3 +15,13 @@ pub(crate) use arm::{rounded, saturated};
 mod portable;
 #[cfg(not(shifted_operands))]
 pub(crate) use portable::{rounded, saturated};
+
+#[cfg(half_products)]
+mod halves;
+#[cfg(half_products)]
+pub(crate) use halves::{lower_halves, lower_lower, lower_upper, upper_halves, upper_upper};
+
+#[cfg(not(half_products))]
+mod portable_halves;
+#[cfg(not(half_products))]
+pub(crate) use portable_halves::{lower_halves, lower_lower, lower_upper, upper_halves, upper_upper};

@@ -123,19 +123,54 @@ pub(crate) const fn rough(x: u32) -> u32 {
     grown(root, upper(root, y), 0)
 }
 
+/// The root of `v` from 2^43 to 2^60, within 1.2 units: a finer line, and one step by the remainder.
+#[inline]
+pub(crate) const fn near(v: u64) -> u32 {
+    // What the upper word leaves out is less than 2^-11 of it, and where it is that much the root has 22 bits.
+    let places = ((v >> 32) as u32).leading_zeros() & 30;
+    let x = ((v >> 32) as u32) << places;
+    let y = fine_line(x);
+    // x y is a root in 2:30; the remainder tells by how much it is off, in 45 bits.
+    let rough = (upper(x, y) << 2) >> (places / 2);
+    let remainder = v.wrapping_sub(rough as u64 * rough as u64) as i64;
+    let mend = upper_signed((remainder >> 14) as i32, y as i32) >> (17 - places / 2);
+    rough.wrapping_add_signed(mend)
+}
+
+/// The root of `x` 2^-32 in 2:30 for `x` >= 2^30, within 2 ulp: a finer line, and one Newton step.
+#[inline]
+pub(crate) const fn fine(x: u32) -> u32 {
+    let y = fine_line(x);
+    let root = upper(x, y);
+    // root y is 1 - e in 4:28, and the better root is root (1 + e/2): e in 2^-40, where the 1 has left the word.
+    let e = -((upper(root, y) << 12) as i32);
+    root.wrapping_add_signed(upper_signed(root as i32, e) >> 9)
+}
+
+/// As [`line`], within 2^-16.
+#[inline]
+const fn fine_line(x: u32) -> u32 {
+    let [start, loss] = FINE_LINES[(x >> 24) as usize];
+    start - upper(loss, x << 8)
+}
+
 /// Lines for `1 / sqrt(x)` in 2:30 between multiples of 1/32 of [1/4, 1): the value at the segment's start, and what it
 /// loses along the segment. The first eight, below 1/4, are never read and spare the index its subtraction.
-static LINES: [[u32; 2]; 32] = lines();
+static LINES: [[u32; 2]; 32] = lines(1 << 63, 2);
 
-const fn lines() -> [[u32; 2]; 32] {
-    let mut lines = [[0; 2]; 32];
-    let mut segment = 8;
-    while segment < 32 {
-        // 2^30 / sqrt(i / 32) is the root of 2^65 / i: with 2^5 taken out of the root, which is that of 2^55 * 2^10 / i.
+/// The same between multiples of 1/256.
+static FINE_LINES: [[u32; 2]; 256] = lines(1 << 62, 8);
+
+/// Between multiples of 1/`N` from 1/4 on, where `one` `scale`^2 is `N` 2^60.
+const fn lines<const N: usize>(one: u64, scale: u32) -> [[u32; 2]; N] {
+    let mut lines = [[0; 2]; N];
+    let mut segment = N / 4;
+    while segment < N {
+        // 2^30 / sqrt(i / N) is the root of N 2^60 / i.
         let i = segment as u64;
-        let start = slow_floor((1 << 63) / i) * 2;
-        let end = slow_floor((1 << 63) / (i + 1)) * 2;
-        let middle = slow_floor((1 << 63) / (2 * i + 1) * 2) * 2;
+        let start = slow_floor(one / i) * scale;
+        let end = slow_floor(one / (i + 1)) * scale;
+        let middle = slow_floor(one / (2 * i + 1) * 2) * scale;
         // The chord lies above the curve: half its worst distance balances the error.
         let sag = start / 2 + end / 2 - middle;
         lines[segment] = [start - sag / 2, start - end];
