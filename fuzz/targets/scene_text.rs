@@ -29,6 +29,6 @@ fuzz_target!(|text: &str| {
         primitives
             .solid_spheres
             .iter()
-            .for_each(|sphere| check(&sphere.0));
+            .for_each(|sphere| check(&sphere.sphere));
     }
 });

@@ -3,10 +3,12 @@
 use core::f64::consts::TAU;
 use core::marker::PhantomData;
 
-use fixedmath::{I2F30, I4F28, I16F16, I32F32, U0F32, U16F16, U19F45, U32F32};
+use fixedmath::{I2F30, I4F28, I16F16, I32F32, U0F32, U16F16, U19F45, U32F32, warp};
+use tracer::aggregate::{RoomNumbers, Wall};
 use tracer::arithmetic::{Directions, Formats, Sampling};
 use tracer::camera::FilmNumbers;
-use tracer::geometry::sphere::{Reciprocal, SphereNumbers};
+use tracer::geometry::Grid;
+use tracer::geometry::sphere::{CoarseSphere, Reciprocal, SphereNumbers};
 use tracer::material::{DielectricNumbers, RadianceNumbers};
 
 use crate::Float;
@@ -76,11 +78,6 @@ impl<F: Float> Directions for Floating<F> {
     }
 
     #[inline]
-    fn bisector(a: [F; 3], b: [F; 3], otherwise: [F; 3]) -> [F; 3] {
-        Self::normalised([a[0] + b[0], a[1] + b[1], a[2] + b[2]], otherwise)
-    }
-
-    #[inline]
     fn renormalised(v: [F; 3]) -> [F; 3] {
         Self::normalised(v, v)
     }
@@ -94,18 +91,27 @@ impl<F: Float> Sampling for Floating<F> {
     }
 
     #[inline]
-    fn signed(value: U0F32) -> F {
-        fraction::<F>(value) * F::of(2.0) - F::ONE
-    }
-
-    #[inline]
     fn root_of(value: U0F32) -> F {
         fraction::<F>(value).root()
     }
 
     #[inline]
-    fn complement(z: F) -> F {
-        (F::ONE - z * z).root()
+    fn on_hemisphere(value: U0F32) -> Option<[F; 3]> {
+        // As fixed point chooses, so that both draw alike.
+        warp::checked_hemisphere(value.to_bits())?;
+        let coordinate = |bits: u32| F::of_i32((bits as u16 as i16).into()) + F::of(0.5);
+        let [u, v] =
+            [value.to_bits() >> 16, value.to_bits()].map(|bits| coordinate(bits) * F::of(1.0 / 32768.0));
+        Some([u, v, not_negative(F::ONE - u * u - v * v).root()])
+    }
+
+    #[inline]
+    fn around(axis: [F; 3], v: [F; 3]) -> [F; 3] {
+        let ([x, y, z], [u, v, w]) = (axis, v);
+        let across = x * u + y * v;
+        let (height, turned) = if z < F::ZERO { (-z, -across) } else { (z, across) };
+        let along = w - across / (F::ONE + height);
+        [u + x * along, v + y * along, z * w - turned]
     }
 
     #[inline]
@@ -129,6 +135,8 @@ impl<F: Float> FilmNumbers for Floating<F> {
 impl<F: Float> SphereNumbers for Floating<F> {
     type Square = F;
     type Projection = F;
+    /// The oracle looks at every sphere closely.
+    type Coarse = ();
 
     const NO_SQUARE: F = F::ZERO;
     const GRAZING: F = F::ZERO;
@@ -154,6 +162,14 @@ impl<F: Float> SphereNumbers for Floating<F> {
     }
 
     #[inline]
+    fn coarse(_grid: Grid, _origin: [F; 3], _direction: [F; 3]) {}
+
+    #[inline]
+    fn may_meet(_sphere: &CoarseSphere, _grid: Grid, _ray: &(), _t_max: F) -> bool {
+        true
+    }
+
+    #[inline]
     fn project(v: [F; 3], d: [F; 3]) -> F {
         dot(v, d)
     }
@@ -172,6 +188,15 @@ impl<F: Float> SphereNumbers for Floating<F> {
     fn normal(p: [F; 3], radius: I16F16, _reciprocal: Reciprocal) -> [F; 3] {
         let reciprocal = F::ONE / Self::length(radius);
         p.map(|component| component * reciprocal)
+    }
+}
+
+/// The oracle asks every wall.
+impl<F: Float> RoomNumbers for Floating<F> {
+    #[inline]
+    fn normal_of_wall(wall: &Wall, point: [F; 3]) -> [F; 3] {
+        let reciprocal = F::of_i32(wall.reciprocal) * F::of(1.0 / (1u64 << 44) as f64);
+        [0, 1, 2].map(|i| (point[i] - Self::length(wall.centre[i])) * reciprocal)
     }
 }
 

@@ -28,8 +28,12 @@ macro_rules! capabilities {
 capabilities! {
     /// A sphere seen from within.
     Hollow = "hollow",
+    /// Hollow spheres that are the walls of a [`Room`](crate::aggregate::Room).
+    Room = "room",
     /// A sphere seen from without.
     Solid = "solid",
+    /// Solids that most rays miss by far: see [`CoarseSphere`](crate::geometry::sphere::CoarseSphere).
+    Coarse = "coarse",
     /// A solid that light goes through.
     Inside = "inside",
     /// An opaque solid that camera rays start in.
@@ -72,6 +76,12 @@ impl Capabilities {
     #[must_use]
     pub const fn with(self, capability: Capability) -> Self {
         Self(self.0 | 1 << capability as u32)
+    }
+
+    /// This set without one.
+    #[must_use]
+    pub const fn without(self, capability: Capability) -> Self {
+        Self(self.0 & !(1 << capability as u32))
     }
 
     /// What is in either.

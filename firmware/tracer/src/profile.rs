@@ -2,16 +2,23 @@
 
 use fixedmath::I16F16;
 
+use crate::aggregate::RoomNumbers;
 use crate::arithmetic::{Mixed, Published, Sampling};
 use crate::camera::FilmNumbers;
 use crate::geometry::ShapeNumbers;
-use crate::material::{HemisphereSampling, MalleyDisc, MaterialNumbers, RadianceNumbers, TangentSphere};
+use crate::material::{HemisphereSampling, MalleyDisc, MaterialNumbers, RadianceNumbers, RejectedDisc};
 use crate::random::{FullState, LowBits, Random};
 
 /// Everything a tracer computes with.
-pub trait Numbers: Sampling + FilmNumbers + RadianceNumbers + ShapeNumbers + MaterialNumbers {}
+pub trait Numbers:
+    Sampling + FilmNumbers + RadianceNumbers + ShapeNumbers + RoomNumbers + MaterialNumbers
+{
+}
 
-impl<N: Sampling + FilmNumbers + RadianceNumbers + ShapeNumbers + MaterialNumbers> Numbers for N {}
+impl<N: Sampling + FilmNumbers + RadianceNumbers + ShapeNumbers + RoomNumbers + MaterialNumbers> Numbers
+    for N
+{
+}
 
 /// A named set of arithmetic choices.
 pub trait Profile: Sized + 'static {
@@ -64,5 +71,5 @@ impl Profile for Precise {
     const QUADRATIC: Quadratic = Quadratic::Power;
     type Numbers = Mixed;
     type Random = FullState;
-    type Hemisphere = TangentSphere;
+    type Hemisphere = RejectedDisc;
 }

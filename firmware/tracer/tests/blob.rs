@@ -2,12 +2,14 @@
 
 mod support;
 
+use bytemuck::Zeroable;
 use fixedmath::{I2F30, U0F32};
 use proptest::prelude::*;
-use support::{Blob, blob, blob_for, camera, sphere};
+use support::{Blob, GRID, blob, blob_for, camera, sphere};
+use tracer::aggregate::Room;
 use tracer::camera::CameraRecord;
-use tracer::geometry::sphere::SphereRecord;
-use tracer::geometry::{PrimitiveId, PrimitiveSet};
+use tracer::geometry::sphere::{SolidSphere, SphereRecord};
+use tracer::geometry::{Grid, PrimitiveId, PrimitiveSet};
 use tracer::material::{Kind, MaterialId, MaterialRecord};
 use tracer::scene::{BlobError, Capabilities, Capability, Header, MAX_BYTES, MAX_PRIMITIVES, Scene};
 
@@ -15,7 +17,7 @@ use tracer::scene::{BlobError, Capabilities, Capability, Header, MAX_BYTES, MAX_
 const DIFFUSE_BALL: Capabilities = Capabilities::of(&[Capability::Solid, Capability::Diffuse]);
 
 const HEADER: usize = size_of::<Header>();
-const SPHERE: usize = size_of::<SphereRecord>();
+const SPHERE: usize = size_of::<SolidSphere>();
 const MATERIAL: usize = size_of::<MaterialRecord>();
 
 fn counts(blob: &Blob, image: Capabilities) -> Result<(usize, usize), BlobError> {
@@ -30,13 +32,18 @@ fn a_sphere_is_these_bytes() {
         &[],
         &[sphere([1.0, -1.0, 0.5], 2.0, 0.5, Kind::Diffuse)],
     );
-    let words: [u32; 26] = [
-        u32::from_le_bytes(*b"FXS2"),
-        // The second and the fifth capability.
-        0b1_0010,
-        // One material and no hollow sphere; one solid.
-        1,
-        1,
+    let words: [u32; 30] = [
+        u32::from_le_bytes(*b"FXS3"),
+        // The third and the seventh capability.
+        0b100_0100,
+        // One material, and the grid's shift; no hollow sphere, and one solid.
+        1 | GRID << 16,
+        1 << 16,
+        // Twice a centre of (0, -1, 0) on the grid, turned round; its square less 2 and 7/2 of the longest distance.
+        2 << 16,
+        0,
+        (1 - 2 - 16_385i32 * 7 / 2) as u32,
+        0,
         // Centre and radius, and 4 in 32:32.
         0x1_0000,
         0xffff_0000,
@@ -88,7 +95,7 @@ fn faulty_scenes_are_refused() {
         bad.bytes_mut()[byte] = value;
         view(bad.bytes())
     };
-    let (ball, material) = (HEADER, HEADER + SPHERE);
+    let (ball, material) = (HEADER + SPHERE - size_of::<SphereRecord>(), HEADER + SPHERE);
     assert_eq!(spoiled(0, b'f'), Err(BlobError::BadMagic));
     assert_eq!(
         spoiled(7, 0x80),
@@ -105,14 +112,14 @@ fn faulty_scenes_are_refused() {
         Err(BlobError::BadHeader),
         "more than there can be"
     );
-    assert_eq!(spoiled(14, 1), Err(BlobError::BadHeader), "of a third kind");
+    assert_eq!(spoiled(10, 32), Err(BlobError::BadHeader), "a grid without bits");
     assert_eq!(
-        spoiled(4, 0b1_0000),
+        spoiled(4, 0b100_0000),
         Err(BlobError::BadShape),
         "needs that leave out the ball"
     );
     assert_eq!(
-        spoiled(4, 0b10),
+        spoiled(4, 0b100),
         Err(BlobError::BadMaterial),
         "needs that leave out its material"
     );
@@ -128,6 +135,26 @@ fn faulty_scenes_are_refused() {
         Err(BlobError::BadMaterial),
         "an unknown BSDF"
     );
+}
+
+#[test]
+fn a_room_has_walls_that_there_are() {
+    let wall = sphere([0.0; 3], 9.0, 0.5, Kind::Diffuse);
+    let plain = blob(&[wall], &[]);
+    let with = |primitive: usize| {
+        let mut room = Room::zeroed();
+        for wall in room.walls.as_flattened_mut() {
+            wall.primitive = PrimitiveId::new(primitive);
+        }
+        let mut bytes = plain.bytes().to_vec();
+        bytes.splice(HEADER..HEADER, bytemuck::bytes_of(&room).iter().copied());
+        bytes[4] |= 1 << Capability::Room as u8;
+        let mut blob = Blob(vec![0; bytes.len() / 8]);
+        blob.bytes_mut().copy_from_slice(&bytes);
+        Scene::view(blob.bytes(), Capabilities::ALL).map(|scene| scene.aggregate.room.is_some())
+    };
+    assert_eq!(with(0), Ok(true));
+    assert_eq!(with(1), Err(BlobError::BadShape));
 }
 
 #[test]
@@ -169,7 +196,7 @@ fn a_black_wall_needs_no_diffuse_code() {
 fn as_many_spheres_as_there_may_be() {
     let ball = sphere([0.0; 3], 1.0, 0.5, Kind::Diffuse);
     let most = blob(&[], &vec![ball; MAX_PRIMITIVES]);
-    assert_eq!(most.bytes().len(), MAX_BYTES);
+    assert_eq!(most.bytes().len() + size_of::<Room>(), MAX_BYTES);
     assert_eq!(counts(&most, Capabilities::ALL), Ok((0, MAX_PRIMITIVES)));
     let more = blob(&[ball], &vec![ball; MAX_PRIMITIVES]);
     assert_eq!(counts(&more, Capabilities::ALL), Err(BlobError::BadHeader));
@@ -225,9 +252,13 @@ proptest! {
         hollow in 0u16..6,
         solid in 0u16..6,
     ) {
-        let header = Header::new(Capabilities::ALL, materials, [hollow, solid]);
+        let header = Header::new(Capabilities::ALL, materials, Grid::new(GRID), [hollow, solid]);
         bytemuck::cast_slice_mut(&mut words)[..HEADER].copy_from_slice(bytemuck::bytes_of(&header));
-        let whole = HEADER + usize::from(hollow + solid) * SPHERE + usize::from(materials) * MATERIAL;
+        let whole = HEADER
+            + size_of::<Room>()
+            + usize::from(hollow) * size_of::<SphereRecord>()
+            + usize::from(solid) * SPHERE
+            + usize::from(materials) * MATERIAL;
         let _ = counts(&Blob(words.clone()), Capabilities::ALL);
         words.resize(whole / 8, 0x0001_0000_0000_0000);
         let _ = counts(&Blob(words), Capabilities::ALL);

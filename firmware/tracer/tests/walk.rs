@@ -11,7 +11,7 @@ use tracer::camera::Camera;
 use tracer::geometry::sphere::SphereRecord;
 use tracer::geometry::{Interaction, PrimitiveId, Ray};
 use tracer::integrator::{Integrator, Path};
-use tracer::material::{DielectricNumbers, HemisphereSampling, Kind, MalleyDisc, TangentSphere};
+use tracer::material::{DielectricNumbers, HemisphereSampling, Kind, MalleyDisc, RejectedDisc};
 use tracer::profile::{Paper, Precise, Profile, Quadratic};
 use tracer::random::{FullState, LowBits, Random};
 use tracer::scene::{All, Capabilities, Scene};
@@ -63,7 +63,7 @@ fn warp_is_cosine_weighted<N: Sampling<Unit: Into<f64>>, D: HemisphereSampling>(
 #[test]
 fn our_warp_draws_the_cosine_distribution() {
     // 255 degrees of freedom: 350 is exceeded once in 10,000 runs, and the seed is fixed.
-    let found = warp_is_cosine_weighted::<Mixed, TangentSphere>(&mut FullState::for_unit(1, 0));
+    let found = warp_is_cosine_weighted::<Mixed, RejectedDisc>(&mut FullState::for_unit(1, 0));
     assert!(found < 350.0, "{found}");
     let found = warp_is_cosine_weighted::<Mixed, MalleyDisc>(&mut FullState::for_unit(2, 0));
     assert!(found < 350.0, "{found}");
@@ -76,7 +76,7 @@ fn the_published_parabola_is_seen_by_the_same_test() {
     assert!(found > 1000.0, "{found}");
     // The low bits go round in 65,536 draws and fill every bin alike: too even to be random, four deviations below the
     // mean of 255.
-    let found = warp_is_cosine_weighted::<Mixed, TangentSphere>(&mut LowBits::for_unit(3, 0));
+    let found = warp_is_cosine_weighted::<Mixed, MalleyDisc>(&mut LowBits::for_unit(3, 0));
     assert!(found < 255.0 - 4.0 * 22.6, "{found}");
 }
 
@@ -90,17 +90,17 @@ fn records(scene: &Scene<'_>) -> Vec<SphereRecord> {
     let primitives = scene.aggregate.primitives;
     let hollow = primitives.hollow_spheres.iter().map(|sphere| sphere.0);
     hollow
-        .chain(primitives.solid_spheres.iter().map(|sphere| sphere.0))
+        .chain(primitives.solid_spheres.iter().map(|sphere| sphere.sphere))
         .collect()
 }
 
 /// The nearest surface, as `P` finds it.
 fn nearest<P: Profile>(scene: &Scene<'_>, ray: &Ray<P::Numbers>) -> Option<Interaction<P::Numbers>> {
     let epsilon = P::Numbers::length(Precise::EPSILON);
-    let hit = scene.aggregate.closest::<P, All>(ray, epsilon)?;
+    let surface = scene.aggregate.intersect::<P, All>(ray, epsilon)?;
     assert!(scene.aggregate.any::<P, All>(ray, epsilon, P::Numbers::FAR));
     assert!(!scene.aggregate.any::<P, All>(ray, epsilon, epsilon));
-    scene.aggregate.interaction::<P, All>(ray, hit)
+    Some(surface)
 }
 
 /// The ray that goes on from a surface.
@@ -138,10 +138,10 @@ fn a_ray_never_meets_at_once_the_surface_it_leaves() {
             .record
             .centre;
         let aim = target.map(|c| I2F30::from_num(c.to_num::<f64>() / 12_000.0));
-        let jitter = TangentSphere::direction::<Mixed, _>(Z, &mut random);
+        let jitter = RejectedDisc::direction::<Mixed, _>(Z, &mut random);
         let mut ray = Ray::<Mixed> {
             origin: [I16F16::ZERO; 3],
-            direction: Mixed::bisector(Mixed::normalised(aim, jitter), jitter, jitter),
+            direction: RejectedDisc::direction::<Mixed, _>(Mixed::normalised(aim, jitter), &mut random),
             departed: PrimitiveId::NONE,
             normal: Z,
         };
@@ -171,7 +171,7 @@ fn a_ray_never_meets_at_once_the_surface_it_leaves() {
                 (length(from_centre) - radius).abs() < 3.0 / 65536.0,
                 "the hit is put back on its sphere"
             );
-            let direction = TangentSphere::direction::<Mixed, _>(surface.facing(), &mut random);
+            let direction = RejectedDisc::direction::<Mixed, _>(surface.facing(), &mut random);
             ray = from(&surface, direction);
         }
     }
@@ -193,10 +193,10 @@ fn light_within_a_glass_ball_keeps_its_angle() {
         let (scene, ball) = (view(&bytes), PrimitiveId::new(1));
         let mut entered = 0;
         for ray in 0..2000 {
-            let normal = TangentSphere::direction::<Mixed, _>(Z, &mut random);
+            let normal = RejectedDisc::direction::<Mixed, _>(Z, &mut random);
             // Ever flatter: the sine of the angle with the surface goes down to 2^-16.
             let steep = I2F30::from_bits(1 << (29 - ray % 16));
-            let aside = TangentSphere::direction::<Mixed, _>(normal, &mut random);
+            let aside = RejectedDisc::direction::<Mixed, _>(normal, &mut random);
             let height = Mixed::cosine(aside, normal);
             let along = [0, 1, 2].map(|i| aside[i] - Mixed::times(normal[i], height));
             let along = Mixed::normalised(along, normal);
@@ -248,7 +248,7 @@ impl Profile for TextbookPrecise {
     const QUADRATIC: Quadratic = Quadratic::Textbook;
     type Numbers = Mixed;
     type Random = FullState;
-    type Hemisphere = TangentSphere;
+    type Hemisphere = RejectedDisc;
 }
 
 #[test]
@@ -268,7 +268,7 @@ fn both_formulas_find_the_same_hits() {
     for _ in 0..200_000 {
         let ray = Ray::<Mixed> {
             origin: [I16F16::ZERO; 3],
-            direction: TangentSphere::direction::<Mixed, _>(Z, &mut random),
+            direction: RejectedDisc::direction::<Mixed, _>(Z, &mut random),
             departed: PrimitiveId::NONE,
             normal: Z,
         };
@@ -300,7 +300,7 @@ fn nothing_has_no_surface_and_no_bounds() {
     assert!(
         scene
             .aggregate
-            .closest::<Precise, All>(&ray, Precise::EPSILON)
+            .intersect::<Precise, All>(&ray, Precise::EPSILON)
             .is_none()
     );
     assert!(

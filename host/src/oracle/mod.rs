@@ -6,3 +6,4 @@ pub mod direct;
 pub mod lockstep;
 pub mod noise;
 pub mod reference;
+pub mod shortcuts;

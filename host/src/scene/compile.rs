@@ -3,14 +3,16 @@
 //! Everything that does not change during a render is worked out here: `1/r`, `r^2`, the camera's basis in the scale that
 //! uses its format best, reflectance over continuation probability. What the scene needs of the tracer comes out beside it.
 
-use fixedmath::{I1F31, I2F30, I4F28, I16F16, I32F32, U0F32, U16F16, U19F45};
+use fixedmath::{I1F31, I4F28, I16F16, I32F32, U16F16, U19F45};
 use tracer::camera::CameraRecord;
 use tracer::geometry::sphere::SphereRecord;
 use tracer::geometry::{PrimitiveId, PrimitiveSet};
 use tracer::material::{Bsdf, Dielectric, Kind, MaterialId, MaterialRecord};
 use tracer::scene::{Capabilities, Capability, Header};
 
+use super::fixed::{q0_32, q16, q30};
 use super::light::Light;
+use super::proof::Proved;
 use super::start::StartPatch;
 use super::validate::is_cut_open;
 use super::vector::{cross, normalised};
@@ -32,6 +34,16 @@ pub struct CompiledScene {
 }
 
 impl CompiledScene {
+    /// Whether its hollow spheres are proved to be a room.
+    pub fn is_room(&self) -> bool {
+        self.needs.has(Capability::Room)
+    }
+
+    /// Whether cores look at its solids roughly first.
+    pub fn has_coarse_solids(&self) -> bool {
+        self.needs.has(Capability::Coarse)
+    }
+
     /// The scene as cores read it, seen from its camera.
     ///
     /// # Panics
@@ -75,25 +87,28 @@ pub fn compile(scene: &Scene, width: u16, height: u16) -> CompiledScene {
     let (hollow, solid): (Vec<&Sphere>, Vec<&Sphere>) =
         scene.spheres.iter().partition(|sphere| sphere.hollow);
     let counts = [hollow.len() as u16, solid.len() as u16];
-    let spheres = [hollow, solid].concat();
+    let spheres = [&hollow[..], &solid[..]].concat();
     let exponent = Light::of(scene.spheres.iter()).exponent();
     let mut materials = Vec::new();
-    let records: Vec<SphereRecord> = spheres
-        .iter()
-        .map(|sphere| record(sphere, material_id(&mut materials, material(sphere, exponent))))
-        .collect();
-    let needs = needs(&spheres);
-    let header = Header::new(needs, materials.len() as u16, counts);
+    let mut record_of =
+        |sphere: &&Sphere| record(sphere, material_id(&mut materials, material(sphere, exponent)));
+    let hollow_records: Vec<SphereRecord> = hollow.iter().map(&mut record_of).collect();
+    let solid_records: Vec<SphereRecord> = solid.iter().map(&mut record_of).collect();
+    let proved = Proved::of(&spheres, hollow_records, solid_records);
+    let needs = needs(&spheres).union(proved.needs());
+    let header = Header::new(needs, materials.len() as u16, proved.grid, counts);
     let blob = [
         bytemuck::bytes_of(&header),
-        bytemuck::cast_slice(&records),
+        bytemuck::cast_slice(proved.room.as_slice()),
+        bytemuck::cast_slice(&proved.hollow_spheres),
+        bytemuck::cast_slice(&proved.solid_spheres),
         bytemuck::cast_slice(&materials),
     ]
     .concat();
     let blob = Blob::new(&blob);
     let camera = CameraRecord {
         opened: opened(scene, &spheres, width, height),
-        ..camera(&scene.camera, width, height)
+        ..camera(&scene.camera, proved.origin, width, height)
     };
     CompiledScene {
         id: wire::crc32(blob.bytes()),
@@ -104,7 +119,7 @@ pub fn compile(scene: &Scene, width: u16, height: u16) -> CompiledScene {
     }
 }
 
-fn camera(camera: &Camera, width: u16, height: u16) -> CameraRecord {
+fn camera(camera: &Camera, origin: [I16F16; 3], width: u16, height: u16) -> CameraRecord {
     let aspect = f64::from(width) / f64::from(height);
     let right = normalised(cross(camera.direction, camera.up));
     let plane_height = camera.height_for(width, height);
@@ -116,7 +131,7 @@ fn camera(camera: &Camera, width: u16, height: u16) -> CameraRecord {
     CameraRecord {
         reciprocals: subpixels.map(|count| U19F45::from_bits((1 << 45) / u64::from(count))),
         subpixels,
-        position: camera.position.map(q16),
+        position: [0, 1, 2].map(|i| q16(camera.position[i]) - origin[i]),
         near: q16(camera.near),
         forward: scaled(camera.direction),
         right: scaled(right),
@@ -229,20 +244,6 @@ fn opened(scene: &Scene, spheres: &[&Sphere], width: u16, height: u16) -> Primit
     opened
 }
 
-/// To 16:16; scene validation keeps values within it.
-fn q16(value: f64) -> I16F16 {
-    I16F16::from_bits((value * 65536.0).round() as i32)
-}
-
-fn q30(value: f64) -> I2F30 {
-    I2F30::from_bits((value * f64::from(1 << 30)).round() as i32)
-}
-
-/// To 0:32, where all ones stand for 1: the conversion saturates there.
-fn q0_32(value: f64) -> U0F32 {
-    U0F32::from_bits((value * 4_294_967_296.0).round() as u32)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -256,7 +257,7 @@ mod tests {
         let compiled = compile(&cornell(), 256, 192);
         assert_eq!(
             compiled.needs.to_string(),
-            "hollow,solid,inside,diffuse,mirror,glass"
+            "hollow,room,solid,coarse,inside,diffuse,mirror,glass"
         );
         let primitives = compiled.view().aggregate.primitives;
         assert_eq!(
@@ -272,7 +273,10 @@ mod tests {
             .spheres
             .retain(|sphere| matches!(sphere.material, Material::Diffuse(_)));
         // The lamp is solid, and black.
-        assert_eq!(compile(&scene, 8, 8).needs.to_string(), "hollow,solid,diffuse");
+        assert_eq!(
+            compile(&scene, 8, 8).needs.to_string(),
+            "hollow,room,solid,diffuse"
+        );
     }
 
     /// A moved camera, and a picture of another size, see the same scene; even where they cut a ball open.
@@ -318,7 +322,7 @@ mod tests {
     #[test]
     fn film_vectors_use_their_format_and_never_leave_it() {
         for (width, height) in [(256, 192), (1, 1), (4096, 16), (16, 4096)] {
-            let camera = camera(&cornell().camera, width, height);
+            let camera = camera(&cornell().camera, [I16F16::ZERO; 3], width, height);
             let sum = (0..3).map(|i| {
                 let [forward, right, up] = [camera.forward, camera.right, camera.up]
                     .map(|vector| i64::from(vector[i].to_bits()).abs());

@@ -67,7 +67,7 @@ fn balls_and_rooms_that_reach_across_the_start_of_rays() {
     );
     let scene = Scene::parse("cut.toml", &cut).unwrap();
     let compiled = compile(&scene, 64, 48);
-    assert_eq!(compiled.needs.to_string(), "hollow,solid,twosided,diffuse");
+    assert_eq!(compiled.needs.to_string(), "hollow,solid,coarse,twosided,diffuse");
     // The same out of the picture, and behind where rays start.
     for centre in ["[9, 1.2, 0]", "[1.2, 1.2, -8]"] {
         let free = near.replace(
@@ -75,7 +75,7 @@ fn balls_and_rooms_that_reach_across_the_start_of_rays() {
             &format!("centre = {centre}\nradius = 0.7"),
         );
         let free = compile(&Scene::parse("free.toml", &free).unwrap(), 64, 48);
-        assert_eq!(free.needs.to_string(), "hollow,solid,diffuse");
+        assert_eq!(free.needs.to_string(), "hollow,solid,coarse,diffuse");
     }
     // A room that ends between the middle and the edge, to the left.
     let second = "[[sphere]]\nname = \"alcove\"\nhollow = true\ncentre = [9, 0, 0]\nradius = 10.8\ndiffuse = [0, 0, 0]\n";
@@ -133,7 +133,7 @@ pub(super) fn check_compiled(scene: &Scene) {
     let compiled = compile(scene, 64, 48);
     let primitives = compiled.view().aggregate.primitives;
     let hollow = primitives.hollow_spheres.iter().map(|sphere| sphere.0);
-    for record in hollow.chain(primitives.solid_spheres.iter().map(|sphere| sphere.0)) {
+    for record in hollow.chain(primitives.solid_spheres.iter().map(|sphere| sphere.sphere)) {
         let found = record.reciprocal.to_num::<f64>() * 2f64.powi(i32::from(record.shift) - 13);
         let exact = 1.0 / record.radius.to_num::<f64>();
         assert!((found / exact - 1.0).abs() < 2f64.powi(-28), "{record:?}");

@@ -5,9 +5,12 @@
 //! it into the bytes a core reads is the scene compiler's business.
 
 mod compile;
+mod fixed;
 mod light;
 mod limits;
 mod parse;
+mod proof;
+mod room;
 mod start;
 mod unit_size;
 mod validate;

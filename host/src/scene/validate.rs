@@ -87,7 +87,7 @@ fn reach(sphere: &Sphere) -> f64 {
 
 /// The greatest distance from `point` to where a ray can start, or a bound on it. In a room, what all hollow spheres have
 /// in common, that is its furthest point, and elsewhere the far side of some sphere.
-fn farthest_start(spheres: &[&Sphere], point: [f64; 3]) -> f64 {
+pub(super) fn farthest_start(spheres: &[&Sphere], point: [f64; 3]) -> f64 {
     let far_side = |sphere: &&Sphere| length(sub(point, sphere.centre)) + sphere.radius;
     let mut rooms = spheres.iter().copied().filter(|sphere| sphere.hollow).peekable();
     if rooms.peek().is_none() {

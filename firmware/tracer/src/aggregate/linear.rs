@@ -1,20 +1,25 @@
-//! The plain list: every primitive is tried.
+//! The list: every primitive is tried, but for those that are proved to be behind another ([`Room`]).
 
 use core::marker::PhantomData;
 
-use super::Aggregate;
+use super::{Aggregate, Exit, Room, RoomNumbers};
 use crate::arithmetic::Formats;
-use crate::capability::{Capability, Needs};
+use crate::capability::{Capabilities, Capability, Needs};
 use crate::geometry::{
-    Bounds, Hit, Interaction, OnShape, PrimitiveId, PrimitiveSet, Primitives, Ray, Shape, Standing, Visitor,
+    Bounds, Grid, Hit, Interaction, OnShape, PrimitiveId, PrimitiveSet, Primitives, Ray, Shape, Standing,
+    Visitor,
 };
-use crate::profile::Profile;
+use crate::profile::{Profile, Quadratic};
 
-/// All primitives of a scene, tried one after the other.
+/// All primitives of a scene, tried one after the other, and what has been proved of them.
 #[derive(Clone, Copy, Debug)]
 pub struct Linear<'s> {
     /// The primitives.
     pub primitives: Primitives<'s>,
+    /// The grid that coarse tests are on.
+    pub grid: Grid,
+    /// What has been proved of the hollow spheres.
+    pub room: Option<&'s Room>,
     /// The opaque solids that rays start within.
     pub opened: &'s PrimitiveSet,
 }
@@ -22,6 +27,84 @@ pub struct Linear<'s> {
 type Length<P> = <<P as Profile>::Numbers as Formats>::Length;
 
 impl Linear<'_> {
+    /// Where the ray meets the first hollow sphere, if that is known without asking all.
+    #[inline]
+    fn exit<P: Profile, F: Needs>(&self, ray: &Ray<P::Numbers>) -> Option<Exit<'_, P::Numbers>> {
+        match (P::QUADRATIC, self.room) {
+            (Quadratic::Power, Some(room)) if F::NEEDS.has(Capability::Room) => {
+                let exit = P::Numbers::exit(room, ray.origin, ray.direction)?;
+                // Of the surface that it leaves, the formula has both roots.
+                (!ray.departs_from(exit.wall.primitive)).then_some(exit)
+            }
+            _ => None,
+        }
+    }
+
+    /// The nearest hit that is nearer than `t_max`, of the primitives of the kinds in `F`; of no primitive where there is none.
+    #[inline]
+    fn closest_from<P: Profile, F: Needs>(
+        &self,
+        ray: &Ray<P::Numbers>,
+        epsilon: Length<P>,
+        t_max: Length<P>,
+    ) -> Hit<P::Numbers> {
+        let mut closest = Closest::<P, F> {
+            list: self,
+            ray,
+            epsilon,
+            t_max,
+            nearest: PrimitiveId::NONE,
+            needs: PhantomData,
+        };
+        self.primitives.visit(&mut closest);
+        Hit {
+            t: closest.t_max,
+            primitive: closest.nearest,
+        }
+    }
+
+    /// The nearest hit of all primitives.
+    #[inline]
+    fn closest<P: Profile, F: Needs>(&self, ray: &Ray<P::Numbers>, epsilon: Length<P>) -> Hit<P::Numbers> {
+        self.closest_from::<P, F>(ray, epsilon, P::Numbers::FAR)
+    }
+
+    /// The same, kept apart from what happens more often.
+    #[cold]
+    #[inline(never)]
+    fn closest_apart<P: Profile, F: Needs>(
+        &self,
+        ray: &Ray<P::Numbers>,
+        epsilon: Length<P>,
+    ) -> Hit<P::Numbers> {
+        self.closest::<P, F>(ray, epsilon)
+    }
+
+    /// The surface at a hit; none where there is no such primitive.
+    #[inline]
+    fn interaction<P: Profile, F: Needs>(
+        &self,
+        ray: &Ray<P::Numbers>,
+        hit: Hit<P::Numbers>,
+    ) -> Option<Interaction<P::Numbers>> {
+        let surface = Surface::<P, F> {
+            ray,
+            standing: self.standing::<P, F>(ray, hit.primitive),
+            hit,
+            needs: PhantomData,
+        };
+        self.primitives.with(hit.primitive, surface)
+    }
+
+    /// The nearest surface, every primitive being asked: what [`Aggregate::intersect`] must find, too.
+    pub fn intersect_plainly<P: Profile, F: Needs>(
+        &self,
+        ray: &Ray<P::Numbers>,
+        epsilon: Length<P>,
+    ) -> Option<Interaction<P::Numbers>> {
+        self.interaction::<P, F>(ray, self.closest::<P, F>(ray, epsilon))
+    }
+
     #[inline]
     fn is_two_sided<F: Needs>(&self, primitive: PrimitiveId) -> bool {
         F::NEEDS.has(Capability::TwoSided) && self.opened.contains(primitive)
@@ -34,6 +117,13 @@ impl Linear<'_> {
             two_sided: self.is_two_sided::<F>(primitive),
         }
     }
+}
+
+/// What is within a room's walls.
+struct Within<F>(PhantomData<F>);
+
+impl<F: Needs> Needs for Within<F> {
+    const NEEDS: Capabilities = F::NEEDS.without(Capability::Hollow);
 }
 
 /// The nearest hit so far.
@@ -57,6 +147,7 @@ impl<P: Profile, F: Needs> Visitor for Closest<'_, P, F> {
         let left_at = |index: usize| shapes.len().wrapping_sub(index.wrapping_sub(first));
         let index_at = |left: usize| first + shapes.len() - left;
         let departed = left_at(self.ray.departed.index());
+        let prepared = S::prepare::<P, F>(self.ray, self.list.grid);
         let (mut nearest, mut left) = (0, shapes);
         while let [shape, rest @ ..] = left {
             let standing = Standing {
@@ -65,7 +156,7 @@ impl<P: Profile, F: Needs> Visitor for Closest<'_, P, F> {
                     .list
                     .is_two_sided::<F>(PrimitiveId::new(index_at(left.len()))),
             };
-            if let Some(t) = shape.closest::<P, F>(self.ray, standing, self.epsilon, self.t_max) {
+            if let Some(t) = shape.closest::<P, F>(self.ray, &prepared, standing, self.epsilon, self.t_max) {
                 (self.t_max, nearest) = (t, left.len());
             }
             left = rest;
@@ -88,11 +179,12 @@ struct Any<'a, P: Profile, F> {
 
 impl<P: Profile, F: Needs> Visitor for Any<'_, P, F> {
     fn visit<S: Shape>(&mut self, first: usize, shapes: &[S]) {
+        let prepared = S::prepare::<P, F>(self.ray, self.list.grid);
         self.found = self.found
             || F::NEEDS.has(S::CAPABILITY)
                 && (first..).zip(shapes).any(|(index, shape)| {
                     let standing = self.list.standing::<P, F>(self.ray, PrimitiveId::new(index));
-                    shape.any::<P, F>(self.ray, standing, self.epsilon, self.t_max)
+                    shape.any::<P, F>(self.ray, &prepared, standing, self.epsilon, self.t_max)
                 });
     }
 }
@@ -114,24 +206,37 @@ impl<P: Profile, F: Needs> OnShape<Interaction<P::Numbers>> for Surface<'_, P, F
 
 impl Aggregate for Linear<'_> {
     #[inline]
-    fn closest<P: Profile, F: Needs>(
+    fn intersect<P: Profile, F: Needs>(
         &self,
         ray: &Ray<P::Numbers>,
         epsilon: Length<P>,
-    ) -> Option<Hit<P::Numbers>> {
-        let mut closest = Closest::<P, F> {
-            list: self,
-            ray,
-            epsilon,
-            t_max: P::Numbers::FAR,
-            nearest: PrimitiveId::NONE,
-            needs: PhantomData,
+    ) -> Option<Interaction<P::Numbers>> {
+        if !F::NEEDS.has(Capability::Room) {
+            return self.interaction::<P, F>(ray, self.closest::<P, F>(ray, epsilon));
+        }
+        let hit = match self.exit::<P, F>(ray) {
+            None => self.closest_apart::<P, F>(ray, epsilon),
+            Some(exit) => {
+                let within = self.closest_from::<P, Within<F>>(ray, epsilon, exit.t);
+                if within.primitive != PrimitiveId::NONE {
+                    within
+                } else if exit.wall.reciprocal == 0 {
+                    Hit {
+                        t: exit.t,
+                        primitive: exit.wall.primitive,
+                    }
+                } else {
+                    return Some(Interaction {
+                        point: exit.point,
+                        normal: P::Numbers::normal_of_wall(exit.wall, exit.point),
+                        from_inside: true,
+                        primitive: exit.wall.primitive,
+                        material: exit.wall.material,
+                    });
+                }
+            }
         };
-        self.primitives.visit(&mut closest);
-        (closest.nearest != PrimitiveId::NONE).then_some(Hit {
-            t: closest.t_max,
-            primitive: closest.nearest,
-        })
+        self.interaction::<P, F>(ray, hit)
     }
 
     fn any<P: Profile, F: Needs>(&self, ray: &Ray<P::Numbers>, epsilon: Length<P>, t_max: Length<P>) -> bool {
@@ -145,21 +250,6 @@ impl Aggregate for Linear<'_> {
         };
         self.primitives.visit(&mut any);
         any.found
-    }
-
-    #[inline]
-    fn interaction<P: Profile, F: Needs>(
-        &self,
-        ray: &Ray<P::Numbers>,
-        hit: Hit<P::Numbers>,
-    ) -> Option<Interaction<P::Numbers>> {
-        let surface = Surface::<P, F> {
-            ray,
-            standing: self.standing::<P, F>(ray, hit.primitive),
-            hit,
-            needs: PhantomData,
-        };
-        self.primitives.with(hit.primitive, surface)
     }
 
     fn bounds(&self) -> Option<Bounds> {

@@ -9,9 +9,6 @@ use super::{Directions, Formats, Sampling};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mixed {}
 
-/// 1 as a product of two direction components, 4:60.
-const ONE_SQUARED: u64 = 1 << 60;
-
 impl Formats for Mixed {
     type Length = I16F16;
     type Unit = I2F30;
@@ -55,11 +52,6 @@ impl Directions for Mixed {
     }
 
     #[inline]
-    fn bisector(a: [I2F30; 3], b: [I2F30; 3], otherwise: [I2F30; 3]) -> [I2F30; 3] {
-        unit::checked_bisector(a, b).unwrap_or(otherwise)
-    }
-
-    #[inline]
     fn renormalised(v: [I2F30; 3]) -> [I2F30; 3] {
         unit::renormalised(v)
     }
@@ -72,20 +64,9 @@ impl Sampling for Mixed {
     }
 
     #[inline]
-    fn signed(fraction: U0F32) -> I2F30 {
-        I2F30::from_bits((fraction.to_bits() ^ 1 << 31) as i32 >> 1)
-    }
-
-    #[inline]
     fn root_of(fraction: U0F32) -> I2F30 {
         // The root of a 0:32 fraction shifted to 0:60 has 30 bits.
         I2F30::from_bits(root::nearest(u64::from(fraction.to_bits()) << 28) as i32)
-    }
-
-    #[inline]
-    fn complement(z: I2F30) -> I2F30 {
-        let z = i64::from(z.to_bits());
-        I2F30::from_bits(root::nearest(ONE_SQUARED.saturating_sub((z * z) as u64)) as i32)
     }
 
     #[inline]
@@ -99,7 +80,12 @@ impl Sampling for Mixed {
     }
 
     #[inline]
-    fn on_sphere(height: U0F32, turn: U0F32) -> [I2F30; 3] {
-        warp::sphere(height.to_bits(), turn.to_bits())
+    fn on_hemisphere(fraction: U0F32) -> Option<[I2F30; 3]> {
+        warp::checked_hemisphere(fraction.to_bits())
+    }
+
+    #[inline]
+    fn around(axis: [I2F30; 3], v: [I2F30; 3]) -> [I2F30; 3] {
+        unit::around(axis, v)
     }
 }

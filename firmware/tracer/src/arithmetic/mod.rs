@@ -63,8 +63,6 @@ pub trait Directions: Formats {
     fn times(a: Self::Unit, b: Self::Unit) -> Self::Unit;
     /// `v` brought to unit length, or `otherwise` where it has next to none. Components lie in [-2, 2).
     fn normalised(v: [Self::Unit; 3], otherwise: [Self::Unit; 3]) -> [Self::Unit; 3];
-    /// Half the sum of two unit vectors brought to unit length, or `otherwise`.
-    fn bisector(a: [Self::Unit; 3], b: [Self::Unit; 3], otherwise: [Self::Unit; 3]) -> [Self::Unit; 3];
     /// A nearly unit vector put back to unit length.
     fn renormalised(v: [Self::Unit; 3]) -> [Self::Unit; 3];
 }
@@ -76,12 +74,8 @@ const HALF: U0F32 = U0F32::from_bits(1 << 31);
 pub trait Sampling: Directions {
     /// Cosine and sine of a part of a turn.
     fn cos_sin(turn: U0F32) -> (Self::Unit, Self::Unit);
-    /// 2 `fraction` - 1: uniform in [-1, 1).
-    fn signed(fraction: U0F32) -> Self::Unit;
     /// The root of a fraction.
     fn root_of(fraction: U0F32) -> Self::Unit;
-    /// `sqrt(1 - z^2)`.
-    fn complement(z: Self::Unit) -> Self::Unit;
     /// Whether a fraction lies below a probability.
     fn below(fraction: U0F32, probability: Self::Unit) -> bool;
 
@@ -92,11 +86,8 @@ pub trait Sampling: Directions {
         if fraction < HALF { -offset } else { offset }
     }
 
-    /// A point of the unit sphere, uniform by area.
-    fn on_sphere(height: U0F32, turn: U0F32) -> [Self::Unit; 3] {
-        let height = Self::signed(height);
-        let (cosine, sine) = Self::cos_sin(turn);
-        let radius = Self::complement(height);
-        [Self::times(cosine, radius), Self::times(sine, radius), height]
-    }
+    /// A point of the unit hemisphere round the third axis, in proportion to its height; none for one fraction in five.
+    fn on_hemisphere(fraction: U0F32) -> Option<[Self::Unit; 3]>;
+    /// The unit vector that lies to `axis` as `v` does to the third axis.
+    fn around(axis: [Self::Unit; 3], v: [Self::Unit; 3]) -> [Self::Unit; 3];
 }

@@ -2,7 +2,7 @@
 
 use fixedmath::{I2F30, I16F16, I48F16, U0F32, angle, division, product, root};
 
-use super::{Directions, Formats, Sampling, vector};
+use super::{Directions, Formats, Sampling};
 
 /// 16:16 for every quantity but sums of squares, which stay in 48:16 until the root.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,10 +53,6 @@ impl Directions for Published {
         v.map(|component| division::restoring(component, length))
     }
 
-    fn bisector(a: [I16F16; 3], b: [I16F16; 3], otherwise: [I16F16; 3]) -> [I16F16; 3] {
-        Self::normalised(vector::add(a, b), otherwise)
-    }
-
     fn renormalised(v: [I16F16; 3]) -> [I16F16; 3] {
         Self::normalised(v, v)
     }
@@ -70,16 +66,30 @@ impl Sampling for Published {
         )
     }
 
-    fn signed(fraction: U0F32) -> I16F16 {
-        I16F16::from_bits((fraction.to_bits() ^ 1 << 31) as i32 >> 15)
-    }
-
     fn root_of(fraction: U0F32) -> I16F16 {
         root::restoring(I16F16::from_bits((fraction.to_bits() >> 16) as i32))
     }
 
-    fn complement(z: I16F16) -> I16F16 {
-        root::restoring(Self::ONE - product::truncated(z, z))
+    fn on_hemisphere(fraction: U0F32) -> Option<[I16F16; 3]> {
+        let coordinate = |bits: u32| I16F16::from_bits(i32::from(bits as u16 as i16) << 1 | 1);
+        let (u, v) = (
+            coordinate(fraction.to_bits() >> 16),
+            coordinate(fraction.to_bits()),
+        );
+        let square = product::truncated(u, u) + product::truncated(v, v);
+        (square < Self::ONE).then(|| [u, v, root::restoring(Self::ONE - square)])
+    }
+
+    fn around(axis: [I16F16; 3], v: [I16F16; 3]) -> [I16F16; 3] {
+        let ([x, y, z], [u, v, w]) = (axis, v);
+        let across = product::truncated(x, u) + product::truncated(y, v);
+        let along = w - division::restoring(across, Self::ONE + z.abs());
+        let turned = if z < I16F16::ZERO { -across } else { across };
+        [
+            u + product::truncated(x, along),
+            v + product::truncated(y, along),
+            product::truncated(z, w) - turned,
+        ]
     }
 
     fn below(fraction: U0F32, probability: I16F16) -> bool {

@@ -5,11 +5,13 @@
 //! all kinds visits one array after the other, so that no call is dynamic and no primitive carries its kind.
 
 mod bounds;
+mod grid;
 mod primitives;
 mod ray;
 pub mod sphere;
 
 pub use bounds::Bounds;
+pub use grid::Grid;
 pub use primitives::{MAX_PRIMITIVES, OnShape, PrimitiveId, PrimitiveSet, Visitor};
 pub use ray::Ray;
 
@@ -96,10 +98,17 @@ pub trait Shape: Pod {
     /// What it is made of.
     fn material(&self) -> MaterialId;
 
+    /// What its arithmetic wants to know of a ray besides, worked out once.
+    type Prepared<N: ShapeNumbers>: Copy;
+
+    /// Prepares a ray, for a scene with this grid.
+    fn prepare<P: Profile, F: Needs>(ray: &Ray<P::Numbers>, grid: Grid) -> Self::Prepared<P::Numbers>;
+
     /// The nearest hit of `ray` that is nearer than `t_max`. One nearer than `epsilon` may be the surface the ray leaves.
     fn closest<P: Profile, F: Needs>(
         &self,
         ray: &Ray<P::Numbers>,
+        prepared: &Self::Prepared<P::Numbers>,
         standing: Standing,
         epsilon: <P::Numbers as Formats>::Length,
         t_max: <P::Numbers as Formats>::Length,
@@ -109,11 +118,13 @@ pub trait Shape: Pod {
     fn any<P: Profile, F: Needs>(
         &self,
         ray: &Ray<P::Numbers>,
+        prepared: &Self::Prepared<P::Numbers>,
         standing: Standing,
         epsilon: <P::Numbers as Formats>::Length,
         t_max: <P::Numbers as Formats>::Length,
     ) -> bool {
-        self.closest::<P, F>(ray, standing, epsilon, t_max).is_some()
+        self.closest::<P, F>(ray, prepared, standing, epsilon, t_max)
+            .is_some()
     }
 
     /// The surface at `t` along `ray`.

@@ -6,7 +6,8 @@ use super::Shape;
 pub const MAX_PRIMITIVES: usize = 256;
 
 /// The number of a primitive in its scene: kinds in their order, and each kind's in the order of its records.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(transparent)]
 pub struct PrimitiveId(u32);
 
 impl PrimitiveId {

@@ -18,6 +18,12 @@ pub struct Ray<N: Formats> {
 }
 
 impl<N: Formats> Ray<N> {
+    /// The point at `t`.
+    #[inline]
+    pub fn at(&self, t: N::Length) -> [N::Length; 3] {
+        [0, 1, 2].map(|i| self.origin[i] + N::scale(t, self.direction[i]))
+    }
+
     /// Whether it starts on this primitive.
     #[inline]
     pub fn departs_from(&self, primitive: PrimitiveId) -> bool {

@@ -20,6 +20,8 @@ pub const ROULETTE_FROM: u32 = 5;
 #[derive(Debug)]
 pub struct Path<P: Profile, F> {
     termination: Termination,
+    /// Bounces that do not end a path.
+    certain: u32,
     epsilon: <P::Numbers as Formats>::Length,
     needs: PhantomData<F>,
 }
@@ -30,6 +32,10 @@ impl<P: Profile, F: Needs> Integrator<P> for Path<P, F> {
     fn new(plan: &Plan) -> Self {
         Self {
             termination: plan.termination,
+            certain: match plan.termination {
+                Termination::Roulette => ROULETTE_FROM,
+                Termination::Depth(limit) => u32::from(limit).saturating_sub(1),
+            },
             epsilon: P::Numbers::length(plan.epsilon),
             needs: PhantomData,
         }
@@ -48,10 +54,7 @@ impl<P: Profile, F: Needs> Integrator<P> for Path<P, F> {
         let mut rays = 0;
         loop {
             rays += 1;
-            let Some(hit) = scene.aggregate.closest::<P, F>(&ray, self.epsilon) else {
-                break;
-            };
-            let Some(interaction) = scene.aggregate.interaction::<P, F>(&ray, hit) else {
+            let Some(interaction) = scene.aggregate.intersect::<P, F>(&ray, self.epsilon) else {
                 break;
             };
             // Scene::view has seen to it that there is one.
@@ -97,18 +100,16 @@ impl<P: Profile, F: Needs> Path<P, F> {
         bounces: u32,
         random: &mut P::Random,
     ) -> Option<[<P::Numbers as RadianceNumbers>::Weight; 3]> {
-        let share = match self.termination {
-            Termination::Roulette if F::NEEDS.has(Capability::Roulette) => {
-                if bounces <= ROULETTE_FROM {
-                    Some(&material.reflectance)
-                } else {
-                    let continuation = P::Numbers::unit(material.continuation);
-                    P::Numbers::below(random.fraction(), continuation).then_some(&material.continued)
-                }
+        let mut share = &material.reflectance;
+        if bounces > self.certain {
+            if !F::NEEDS.has(Capability::Roulette) || self.termination != Termination::Roulette {
+                return None;
             }
-            Termination::Depth(limit) if bounces < u32::from(limit) => Some(&material.reflectance),
-            _ => None,
-        };
-        share.map(|share| share.map(P::Numbers::weight))
+            if !P::Numbers::below(random.fraction(), P::Numbers::unit(material.continuation)) {
+                return None;
+            }
+            share = &material.continued;
+        }
+        Some(share.map(P::Numbers::weight))
     }
 }

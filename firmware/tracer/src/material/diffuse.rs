@@ -68,15 +68,18 @@ impl HemisphereSampling for MalleyDisc {
     }
 }
 
-/// Ours: a point of the unit sphere that touches the surface from its other end, that is, the normal plus a unit vector, brought
-/// to unit length. Its density is the cosine's exactly, it needs no basis, and there is no axis where it breaks down.
+/// Ours: a point of the unit disc, drawn until a point of the square around is one, lifted onto the hemisphere, in a frame around
+/// the normal that there is for every normal.
 #[derive(Clone, Copy, Debug)]
-pub enum TangentSphere {}
+pub enum RejectedDisc {}
 
-impl HemisphereSampling for TangentSphere {
+impl HemisphereSampling for RejectedDisc {
     #[inline]
     fn direction<N: Sampling, R: Random>(normal: [N::Unit; 3], random: &mut R) -> [N::Unit; 3] {
-        let offset = N::on_sphere(random.fraction(), random.fraction());
-        N::bisector(normal, offset, normal)
+        loop {
+            if let Some(point) = N::on_hemisphere(random.fraction()) {
+                return N::around(normal, point);
+            }
+        }
     }
 }

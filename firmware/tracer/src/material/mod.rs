@@ -11,7 +11,7 @@ mod table;
 
 pub use crate::geometry::MaterialId;
 pub use dielectric::{Dielectric, DielectricNumbers};
-pub use diffuse::{Diffuse, HemisphereSampling, MalleyDisc, TangentSphere};
+pub use diffuse::{Diffuse, HemisphereSampling, MalleyDisc, RejectedDisc};
 pub use mirror::Mirror;
 pub use radiance::RadianceNumbers;
 pub use table::{MaterialRecord, Parameters};

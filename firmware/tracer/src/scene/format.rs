@@ -1,10 +1,12 @@
-//! A scene's bytes: a header, then the records of each kind of shape in the order of [`crate::geometry`]'s list, then the materials.
+//! A scene's bytes: a header, what has been proved of its room if there is one, the records of each kind of shape in the order of
+//! [`crate::geometry`]'s list, the materials.
 //!
 //! | bytes | header |
 //! | --- | --- |
-//! | 4 | magic "FXS2" |
+//! | 4 | magic "FXS3" |
 //! | 4 | what the scene needs: a bit for each [`Capability`](crate::capability::Capability) in its list's order |
 //! | 2 | materials |
+//! | 2 | the shift of the scene's grid |
 //! | 2 a kind | primitives of each kind of shape |
 //! | to a multiple of 8 | zero |
 //!
@@ -14,10 +16,10 @@
 use bytemuck::{Pod, Zeroable};
 
 use super::Scene;
-use crate::aggregate::Linear;
+use crate::aggregate::{Linear, Room};
 use crate::blob::{BlobError, take_records};
-use crate::capability::Capabilities;
-use crate::geometry::{KINDS, MAX_PRIMITIVES, PrimitiveSet, Primitives, Shape, Visitor};
+use crate::capability::{Capabilities, Capability};
+use crate::geometry::{Grid, KINDS, MAX_PRIMITIVES, PrimitiveSet, Primitives, Shape, Visitor};
 use crate::material::MaterialRecord;
 
 const _: () = assert!(
@@ -27,15 +29,15 @@ const _: () = assert!(
 
 /// The longest scene.
 pub const MAX_BYTES: usize =
-    size_of::<Header>() + MAX_PRIMITIVES * (MAX_RECORD + size_of::<MaterialRecord>());
+    size_of::<Header>() + size_of::<Room>() + MAX_PRIMITIVES * (MAX_RECORD + size_of::<MaterialRecord>());
 
 /// The longest record of a shape.
-const MAX_RECORD: usize = 32;
+const MAX_RECORD: usize = 48;
 
-const MAGIC: [u8; 4] = *b"FXS2";
+const MAGIC: [u8; 4] = *b"FXS3";
 
-/// Kinds of shape, filled up to a multiple of 8 bytes with the three fields before.
-const COUNTS: usize = (KINDS + 1).next_multiple_of(4) - 1;
+/// Kinds of shape, filled up to a multiple of 8 bytes with the fields before.
+const COUNTS: usize = (KINDS + 2).next_multiple_of(4) - 2;
 
 /// What comes before the records.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
@@ -44,20 +46,22 @@ pub struct Header {
     magic: [u8; 4],
     needs: Capabilities,
     materials: u16,
+    grid: u16,
     counts: [u16; COUNTS],
 }
 
-const _: () = assert!(size_of::<Header>().is_multiple_of(8));
+const _: () = assert!(size_of::<Header>().is_multiple_of(8) && size_of::<Room>().is_multiple_of(8));
 
 impl Header {
-    /// The header of a scene with so many materials, and primitives of each kind.
-    pub fn new(needs: Capabilities, materials: u16, primitives: [u16; KINDS]) -> Self {
+    /// The header of a scene with so many materials, this grid, and so many primitives of each kind.
+    pub fn new(needs: Capabilities, materials: u16, grid: Grid, primitives: [u16; KINDS]) -> Self {
         let mut counts = [0; COUNTS];
         counts[..KINDS].copy_from_slice(&primitives);
         Self {
             magic: MAGIC,
             needs,
             materials,
+            grid: grid.shift() as u16,
             counts,
         }
     }
@@ -74,14 +78,17 @@ impl<'s> Scene<'s> {
         if header.magic != MAGIC {
             return Err(BlobError::BadMagic);
         }
-        if primitives > MAX_PRIMITIVES || unused.iter().any(|&count| count != 0) {
+        if primitives > MAX_PRIMITIVES || header.grid >= 32 || unused.iter().any(|&count| count != 0) {
             return Err(BlobError::BadHeader);
         }
         if !image.covers(header.needs) {
             return Err(BlobError::NotInThisImage);
         }
+        let room = take_records(&mut bytes, header.needs.has(Capability::Room).into())?.first();
         let scene = Self {
             aggregate: Linear {
+                room,
+                grid: Grid::new(header.grid.into()),
                 primitives: Primitives::take(&mut bytes, *counts)?,
                 opened: &PrimitiveSet::EMPTY,
             },
@@ -101,6 +108,14 @@ impl<'s> Scene<'s> {
                 Some(capability) if needs.has(capability) || material.absorbs_all() => {}
                 _ => return Err(BlobError::BadMaterial),
             }
+        }
+        let hollow_spheres = self.aggregate.primitives.hollow_spheres.len();
+        if self
+            .aggregate
+            .room
+            .is_some_and(|room| !room.is_sound(hollow_spheres))
+        {
+            return Err(BlobError::BadShape);
         }
         let mut check = Check {
             needs,

@@ -3,10 +3,11 @@
 use bytemuck::Zeroable;
 use fixedmath::{I1F31, I2F30, I4F28, I16F16, I32F32, U0F32, U16F16, U19F45};
 use tracer::camera::CameraRecord;
+use tracer::geometry::Grid;
 use tracer::geometry::PrimitiveSet;
-use tracer::geometry::sphere::SphereRecord;
+use tracer::geometry::sphere::{CoarseSphere, SolidSphere, SphereRecord};
 use tracer::material::{Dielectric, Kind, MaterialId, MaterialRecord};
-use tracer::scene::{Capabilities, Header};
+use tracer::scene::{Capabilities, Capability, Header};
 
 pub(crate) fn q16(value: f64) -> I16F16 {
     I16F16::from_num(value)
@@ -76,6 +77,17 @@ impl Blob {
     }
 }
 
+/// Units of an eighth: what 16 bits hold of all that 16:16 does.
+pub(crate) const GRID: u32 = 17;
+
+/// A solid sphere as it lies in a scene's bytes.
+pub(crate) fn solid_sphere(grid: Grid, sphere: SphereRecord) -> SolidSphere {
+    SolidSphere {
+        coarse: CoarseSphere::new(grid, sphere.centre, sphere.square, I16F16::MAX),
+        sphere,
+    }
+}
+
 /// A scene that says it needs `needs`.
 pub(crate) fn blob_for(needs: Capabilities, hollow: &[Sphere], solid: &[Sphere]) -> Blob {
     let spheres: Vec<Sphere> = hollow.iter().chain(solid).copied().collect();
@@ -88,10 +100,19 @@ pub(crate) fn blob_for(needs: Capabilities, hollow: &[Sphere], solid: &[Sphere])
         })
         .collect();
     let materials: Vec<MaterialRecord> = spheres.iter().map(|sphere| sphere.material).collect();
-    let header = Header::new(needs, count, [hollow.len() as u16, solid.len() as u16]);
+    // No room is claimed, and no grid that a ray could leave.
+    let needs = needs.without(Capability::Room).without(Capability::Coarse);
+    let grid = Grid::new(GRID);
+    let (hollow_spheres, solid_spheres) = records.split_at(hollow.len());
+    let solid_spheres: Vec<SolidSphere> = solid_spheres
+        .iter()
+        .map(|&record| solid_sphere(grid, record))
+        .collect();
+    let header = Header::new(needs, count, grid, [hollow.len() as u16, solid.len() as u16]);
     let bytes = [
         bytemuck::bytes_of(&header),
-        bytemuck::cast_slice(&records),
+        bytemuck::cast_slice(hollow_spheres),
+        bytemuck::cast_slice(&solid_spheres),
         bytemuck::cast_slice(&materials),
     ]
     .concat();

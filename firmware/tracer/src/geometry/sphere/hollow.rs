@@ -5,7 +5,7 @@ use bytemuck::{Pod, Zeroable};
 use super::{Length, SphereNumbers, SphereRecord, chord};
 use crate::arithmetic::Formats;
 use crate::capability::{Capability, Needs};
-use crate::geometry::{Bounds, Hit, Interaction, MaterialId, Ray, Shape, Standing};
+use crate::geometry::{Bounds, Grid, Hit, Interaction, MaterialId, Ray, Shape, ShapeNumbers, Standing};
 use crate::profile::{Profile, Quadratic};
 
 /// A sphere that everything outside of is solid: a wall or a room.
@@ -24,12 +24,18 @@ impl Shape for HollowSphere {
         self.0.material
     }
 
+    type Prepared<N: ShapeNumbers> = ();
+
+    #[inline]
+    fn prepare<P: Profile, F: Needs>(_ray: &Ray<P::Numbers>, _grid: Grid) {}
+
     /// By [`Quadratic::Power`]: only the far root is a surface, and it is nearer than `t_max` exactly when `t_max > b` and
     /// `(t_max - b)^2 > b^2 + p`, which says without a root whether to take the root.
     #[inline]
     fn closest<P: Profile, F: Needs>(
         &self,
         ray: &Ray<P::Numbers>,
+        _prepared: &(),
         standing: Standing,
         epsilon: Length<P>,
         t_max: Length<P>,
@@ -52,7 +58,7 @@ impl Shape for HollowSphere {
             return None;
         }
         // Rounding may have put the start an ulp outside: then the hit is at once, and not behind.
-        let t = b + P::Numbers::root(discriminant);
+        let t = b + P::Numbers::near_root(discriminant);
         Some(if t < P::Numbers::NOTHING {
             P::Numbers::NOTHING
         } else {

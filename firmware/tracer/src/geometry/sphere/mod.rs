@@ -3,10 +3,12 @@
 //! With `b = (c - o) . d` and the power of the origin turned round, `p = r^2 - |c - o|^2` (positive inside), a ray meets a sphere
 //! at `b - sqrt(b^2 + p)` and `b + sqrt(b^2 + p)`. How the profile solves that is [`Quadratic`].
 
+mod coarse;
 mod hollow;
 mod numbers;
 mod solid;
 
+pub use coarse::{CoarseRay, CoarseSphere};
 pub use hollow::HollowSphere;
 pub use numbers::SphereNumbers;
 pub use solid::SolidSphere;
@@ -116,21 +118,15 @@ impl SphereRecord {
         crosses: bool,
     ) -> Interaction<P::Numbers> {
         let centre = self.centre.map(P::Numbers::length);
-        let along = |i: usize| P::Numbers::scale(hit.t, ray.direction[i]);
+        let on_ray = ray.at(hit.t);
+        let from_centre = || P::Numbers::normal(sub(on_ray, centre), self.radius, self.reciprocal());
         let (point, normal) = match P::QUADRATIC {
-            Quadratic::Textbook => {
-                let point = [0, 1, 2].map(|i| ray.origin[i] + along(i));
-                (
-                    point,
-                    P::Numbers::normal(sub(point, centre), self.radius, self.reciprocal()),
-                )
-            }
+            Quadratic::Textbook => (on_ray, from_centre()),
             Quadratic::Power => {
                 let normal = if crosses {
                     reflected::<P::Numbers>(ray.normal, ray.direction)
                 } else {
-                    let from_centre = [0, 1, 2].map(|i| ray.origin[i] - centre[i] + along(i));
-                    P::Numbers::normal(from_centre, self.radius, self.reciprocal())
+                    from_centre()
                 };
                 let radius = P::Numbers::length(self.radius);
                 let point = [0, 1, 2].map(|i| centre[i] + P::Numbers::scale(radius, normal[i]));

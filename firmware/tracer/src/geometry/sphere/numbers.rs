@@ -5,8 +5,9 @@ use core::ops::{Add, Sub};
 
 use fixedmath::{I2F30, I16F16, I18F46, I32F32, I48F16, division, product, root, unit};
 
-use super::Reciprocal;
+use super::{CoarseRay, CoarseSphere, Reciprocal};
 use crate::arithmetic::{Directions, Mixed, Published};
+use crate::geometry::Grid;
 
 /// Squares of lengths, and lengths along a direction.
 ///
@@ -15,6 +16,8 @@ use crate::arithmetic::{Directions, Mixed, Published};
 pub trait SphereNumbers: Directions {
     /// Squares of lengths.
     type Square: Copy + Debug + PartialOrd + Add<Output = Self::Square> + Sub<Output = Self::Square>;
+    /// What is enough of a ray to know most spheres that it misses.
+    type Coarse: Copy + Debug;
     /// A length along a direction before it is rounded.
     type Projection: Copy + Debug;
 
@@ -31,12 +34,20 @@ pub trait SphereNumbers: Directions {
     fn product(a: Self::Length, b: Self::Length) -> Self::Square;
     /// The root of a square; 0 for a negative one.
     fn root(square: Self::Square) -> Self::Length;
+    /// The root of a square, quickly: within 1.2 ulp.
+    fn near_root(square: Self::Square) -> Self::Length {
+        Self::root(square)
+    }
     /// `v . d`.
     fn project(v: [Self::Length; 3], d: [Self::Unit; 3]) -> Self::Projection;
     /// A projection as a length, cut to its format.
     fn length_of(projection: Self::Projection) -> Self::Length;
     /// A projection's square.
     fn squared(projection: Self::Projection) -> Self::Square;
+    /// A ray on the scene's grid.
+    fn coarse(grid: Grid, origin: [Self::Length; 3], direction: [Self::Unit; 3]) -> Self::Coarse;
+    /// Whether a ray may meet a sphere nearer than `t_max`: `false` only where it surely does not.
+    fn may_meet(sphere: &CoarseSphere, grid: Grid, ray: &Self::Coarse, t_max: Self::Length) -> bool;
     /// `p / r` for a point `p` relative to the centre of the sphere it lies on: a unit vector.
     fn normal(p: [Self::Length; 3], radius: I16F16, reciprocal: Reciprocal) -> [Self::Unit; 3];
 }
@@ -47,6 +58,7 @@ fn bits(v: [I2F30; 3]) -> [i64; 3] {
 
 impl SphereNumbers for Mixed {
     type Square = I32F32;
+    type Coarse = CoarseRay;
     /// Exact.
     type Projection = I18F46;
 
@@ -75,6 +87,11 @@ impl SphereNumbers for Mixed {
     }
 
     #[inline]
+    fn near_root(square: I32F32) -> I16F16 {
+        root::near_square(square)
+    }
+
+    #[inline]
     fn project(v: [I16F16; 3], d: [I2F30; 3]) -> I18F46 {
         let [x, y, z] = bits(d);
         let sum =
@@ -99,6 +116,16 @@ impl SphereNumbers for Mixed {
     }
 
     #[inline]
+    fn coarse(grid: Grid, origin: [I16F16; 3], direction: [I2F30; 3]) -> CoarseRay {
+        CoarseRay::new(grid, origin, direction)
+    }
+
+    #[inline]
+    fn may_meet(sphere: &CoarseSphere, grid: Grid, ray: &CoarseRay, t_max: I16F16) -> bool {
+        sphere.may_be_met(grid, ray, t_max)
+    }
+
+    #[inline]
     fn normal(p: [I16F16; 3], _radius: I16F16, reciprocal: Reciprocal) -> [I2F30; 3] {
         let component = |p: I16F16| {
             let shifted = p.to_bits() << reciprocal.shift;
@@ -111,6 +138,7 @@ impl SphereNumbers for Mixed {
 
 impl SphereNumbers for Published {
     type Square = I48F16;
+    type Coarse = ();
     type Projection = I16F16;
 
     const NO_SQUARE: I48F16 = I48F16::ZERO;
@@ -142,6 +170,12 @@ impl SphereNumbers for Published {
 
     fn squared(projection: I16F16) -> I48F16 {
         Self::product(projection, projection)
+    }
+
+    fn coarse(_grid: Grid, _origin: [I16F16; 3], _direction: [I16F16; 3]) {}
+
+    fn may_meet(_sphere: &CoarseSphere, _grid: Grid, _ray: &(), _t_max: I16F16) -> bool {
+        true
     }
 
     fn normal(p: [I16F16; 3], radius: I16F16, _reciprocal: Reciprocal) -> [I16F16; 3] {

@@ -2,26 +2,38 @@
 
 use bytemuck::{Pod, Zeroable};
 
-use super::{Length, SphereNumbers, SphereRecord, chord};
+use super::{CoarseSphere, Length, SphereNumbers, SphereRecord, chord};
 use crate::arithmetic::{Directions, Formats};
 use crate::capability::{Capability, Needs};
-use crate::geometry::{Bounds, Hit, Interaction, MaterialId, Ray, Shape, Standing};
+use crate::geometry::{Bounds, Grid, Hit, Interaction, MaterialId, Ray, Shape, ShapeNumbers, Standing};
 use crate::profile::{Profile, Quadratic};
 
 /// A ball.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
-#[repr(transparent)]
-pub struct SolidSphere(pub SphereRecord);
+#[repr(C)]
+pub struct SolidSphere {
+    /// The sphere, roughly: what most rays are known by to miss it.
+    pub coarse: CoarseSphere,
+    /// The sphere.
+    pub sphere: SphereRecord,
+}
 
 impl Shape for SolidSphere {
     const CAPABILITY: Capability = Capability::Solid;
 
     fn is_sound(&self) -> bool {
-        self.0.is_sound()
+        self.sphere.is_sound()
     }
 
     fn material(&self) -> MaterialId {
-        self.0.material
+        self.sphere.material
+    }
+
+    type Prepared<N: ShapeNumbers> = (Grid, N::Coarse);
+
+    #[inline]
+    fn prepare<P: Profile, F: Needs>(ray: &Ray<P::Numbers>, grid: Grid) -> Self::Prepared<P::Numbers> {
+        (grid, P::Numbers::coarse(grid, ray.origin, ray.direction))
     }
 
     /// By [`Quadratic::Power`]: only the near root is a surface, and only where `p < 0 < b`, unless the ball has an inside. A ray
@@ -31,18 +43,60 @@ impl Shape for SolidSphere {
     fn closest<P: Profile, F: Needs>(
         &self,
         ray: &Ray<P::Numbers>,
+        prepared: &Self::Prepared<P::Numbers>,
         standing: Standing,
         epsilon: Length<P>,
         t_max: Length<P>,
     ) -> Option<Length<P>> {
         if matches!(P::QUADRATIC, Quadratic::Textbook) {
-            return self.0.textbook::<P>(ray, epsilon, t_max);
+            return self.sphere.textbook::<P>(ray, epsilon, t_max);
         }
-        let to_centre = self.0.centre_from::<P>(ray);
+        if !F::NEEDS.has(Capability::Coarse) {
+            return self.closely::<P, F>(ray, standing, epsilon, t_max);
+        }
+        if P::Numbers::may_meet(&self.coarse, prepared.0, &prepared.1, t_max) {
+            return self.closely_apart::<P, F>(ray, standing, epsilon, t_max);
+        }
+        None
+    }
+
+    #[inline]
+    fn interaction<P: Profile, F: Needs>(
+        &self,
+        ray: &Ray<P::Numbers>,
+        standing: Standing,
+        hit: Hit<P::Numbers>,
+    ) -> Interaction<P::Numbers> {
+        let crosses = (self.sphere.has_inside::<F>() || standing.two_sided) && standing.departs;
+        let surface = self.sphere.surface::<P>(ray, hit, crosses);
+        let from_inside =
+            standing.two_sided && P::Numbers::cosine(ray.direction, surface.normal) > P::Numbers::ZERO;
+        Interaction {
+            from_inside,
+            ..surface
+        }
+    }
+
+    fn bounds(&self) -> Bounds {
+        self.sphere.bounds()
+    }
+}
+
+impl SolidSphere {
+    /// Where a ray hits it, by [`Quadratic::Power`].
+    #[inline]
+    fn closely<P: Profile, F: Needs>(
+        &self,
+        ray: &Ray<P::Numbers>,
+        standing: Standing,
+        epsilon: Length<P>,
+        t_max: Length<P>,
+    ) -> Option<Length<P>> {
+        let to_centre = self.sphere.centre_from::<P>(ray);
         let projection = P::Numbers::project(to_centre, ray.direction);
         let b = P::Numbers::length_of(projection);
         // Asked where it matters: kept from here on, it would cost each ball a register.
-        let has_inside = || self.0.has_inside::<F>() || standing.two_sided;
+        let has_inside = || self.sphere.has_inside::<F>() || standing.two_sided;
         if b <= P::Numbers::NOTHING && !has_inside() {
             return None;
         }
@@ -53,7 +107,7 @@ impl Shape for SolidSphere {
                 None
             };
         }
-        let power = P::Numbers::square(self.0.square) - P::Numbers::dot(to_centre, to_centre);
+        let power = P::Numbers::square(self.sphere.square) - P::Numbers::dot(to_centre, to_centre);
         let discriminant = P::Numbers::squared(projection) + power;
         if discriminant < P::Numbers::NO_SQUARE {
             return None;
@@ -75,24 +129,16 @@ impl Shape for SolidSphere {
         (t > epsilon && t < t_max).then_some(t)
     }
 
-    #[inline]
-    fn interaction<P: Profile, F: Needs>(
+    /// The same, kept apart from what happens more often.
+    #[cold]
+    #[inline(never)]
+    fn closely_apart<P: Profile, F: Needs>(
         &self,
         ray: &Ray<P::Numbers>,
         standing: Standing,
-        hit: Hit<P::Numbers>,
-    ) -> Interaction<P::Numbers> {
-        let crosses = (self.0.has_inside::<F>() || standing.two_sided) && standing.departs;
-        let surface = self.0.surface::<P>(ray, hit, crosses);
-        let from_inside =
-            standing.two_sided && P::Numbers::cosine(ray.direction, surface.normal) > P::Numbers::ZERO;
-        Interaction {
-            from_inside,
-            ..surface
-        }
-    }
-
-    fn bounds(&self) -> Bounds {
-        self.0.bounds()
+        epsilon: Length<P>,
+        t_max: Length<P>,
+    ) -> Option<Length<P>> {
+        self.closely::<P, F>(ray, standing, epsilon, t_max)
     }
 }

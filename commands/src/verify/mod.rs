@@ -1,5 +1,7 @@
 //! `cargo xtask verify`
 
+mod shortcuts;
+
 use std::process::ExitCode;
 
 use anyhow::ensure;
@@ -11,7 +13,10 @@ use host::platform::console::say;
 
 /// Arguments of `verify`.
 #[derive(clap::Args)]
+#[command(args_conflicts_with_subcommands = true)]
 pub(crate) struct Arguments {
+    #[command(subcommand)]
+    what: Option<Part>,
     /// Try all 2^32 inputs of the operations that have no more, and a thousand million of the others: some minutes
     #[arg(long)]
     exhaustive: bool,
@@ -23,9 +28,17 @@ pub(crate) struct Arguments {
     op: Option<String>,
 }
 
+/// What else is verified.
+#[derive(clap::Subcommand)]
+enum Part {
+    /// Compare what cores leave out with the plain loop: rays of the scenes and of random ones must meet the same surfaces
+    Shortcuts(shortcuts::Arguments),
+}
+
 /// Compares a sample of every operation, as `cargo xtask test` does.
 pub(crate) fn sampled() -> anyhow::Result<ExitCode> {
     run(&Arguments {
+        what: None,
         exhaustive: false,
         bless: false,
         op: None,
@@ -33,6 +46,9 @@ pub(crate) fn sampled() -> anyhow::Result<ExitCode> {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
+    if let Some(Part::Shortcuts(arguments)) = &arguments.what {
+        return shortcuts::run(arguments);
+    }
     let depth = if arguments.exhaustive {
         Depth::Exhaustive
     } else {
