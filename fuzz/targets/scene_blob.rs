@@ -8,8 +8,16 @@ use tracer::aggregate::Aggregate;
 use tracer::camera::{Camera, CameraRecord};
 use tracer::integrator::{Integrator, Path};
 use tracer::profile::{Paper, Precise, Profile};
-use tracer::scene::{All, Capabilities, Scene};
+use tracer::scene::{Capabilities, Needs, Scene};
 use tracer::unit::{Plan, SPAN, Termination, render};
+
+/// All capabilities, as a type of this crate's own: functions that are generic over it are compiled here, where numbers wrap as on a
+/// core. Of those kept out of line there may else be one in `host` already, which is built to panic.
+enum Everything {}
+
+impl Needs for Everything {
+    const NEEDS: Capabilities = Capabilities::ALL;
+}
 
 /// One unit. By roulette a path in a perfect mirror has no end.
 fn draw<P: Profile>(scene: &Scene<'_>, record: &CameraRecord) {
@@ -22,7 +30,7 @@ fn draw<P: Profile>(scene: &Scene<'_>, record: &CameraRecord) {
         termination: Termination::Depth(6),
         epsilon: P::EPSILON,
     };
-    let path = Path::<P, All>::new(&plan);
+    let path = Path::<P, Everything>::new(&plan);
     let mut sums = [[U48F16::ZERO; 3]; SPAN];
     let rays = render(&path, scene, &Camera::new(record), &plan, 0, &mut sums);
     assert!((16..=16 * 6).contains(&rays), "{rays} rays");
