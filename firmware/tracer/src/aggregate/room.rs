@@ -124,7 +124,7 @@ impl RoomNumbers for Mixed {
             let above = point[i].to_bits().wrapping_sub(wall.low[i].to_bits());
             above as u32 <= wall.extent[i].to_bits() as u32
         };
-        (within(0) && within(1) && within(2)).then_some(Exit { wall, t, point })
+        (within(0) & within(1) & within(2) & (t >= I16F16::ZERO)).then_some(Exit { wall, t, point })
     }
 
     #[inline]

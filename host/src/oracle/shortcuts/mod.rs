@@ -1,6 +1,7 @@
 //! The plain loop as an oracle: whatever a core leaves out, it must meet the surface that it would have met.
 //!
-//! Rays of real paths, and between them the hard ones: flat along their surface, and along the axes. A ray's two surfaces are the
+//! Rays of real paths, and between them the hard ones: flat along their surface, along the axes, and from starts that are a
+//! little beyond their surface. A ray's two surfaces are the
 //! same primitive's, at the same place and with the same normal but for rounding; or those of two primitives that lie in one place.
 
 mod scenes;
@@ -10,10 +11,11 @@ use std::fmt;
 use fixedmath::{I2F30, I16F16};
 use rayon::prelude::*;
 use tracer::aggregate::Aggregate;
+use tracer::arithmetic::vector::neg;
 use tracer::arithmetic::{Directions, Mixed};
 use tracer::camera::Camera;
 use tracer::geometry::sphere::HollowSphere;
-use tracer::geometry::{Interaction, Ray};
+use tracer::geometry::{Interaction, PrimitiveId, Ray};
 use tracer::material::{HemisphereSampling, Kind, RejectedDisc};
 use tracer::profile::{Precise, Profile};
 use tracer::random::{FullState, Random};
@@ -101,6 +103,9 @@ fn follow(scene: &CompiledScene, rays: u64, random: &mut FullState) -> Result<u6
                 departed: surface.primitive,
                 normal: surface.normal,
             };
+            if below(random, 8) == 0 {
+                ray = beside_its_surface(&ray, random);
+            }
         }
     }
     Ok(compared)
@@ -118,6 +123,22 @@ fn starts_within(scene: &Scene<'_>, ray: &Ray<Mixed>) -> bool {
             let farthest = i64::from(sphere.radius.to_bits() + POINT);
             from_centre.iter().map(|c| c * c).sum::<i64>() <= farthest * farthest
         })
+}
+
+/// A ray that starts up to 3 ulp away along each axis, which is further than rounding puts it, does not know its surface, and may
+/// go right into it: as one that starts where two surfaces touch.
+fn beside_its_surface(ray: &Ray<Mixed>, random: &mut FullState) -> Ray<Mixed> {
+    let aside = |random: &mut FullState| I16F16::from_bits(below(random, 7) as i32 - 3);
+    Ray {
+        origin: ray.origin.map(|coordinate| coordinate + aside(random)),
+        direction: if below(random, 2) == 0 {
+            neg(ray.direction)
+        } else {
+            ray.direction
+        },
+        departed: PrimitiveId::NONE,
+        ..*ray
+    }
 }
 
 /// A whole number below `end`.
