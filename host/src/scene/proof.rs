@@ -114,5 +114,5 @@ fn grid(reaches: &[I16F16], start: I16F16, solids: &[SphereRecord]) -> Grid {
     } else {
         start
     };
-    Grid::finest(farthest, start, centre)
+    Grid::finest(farthest, start.max(centre))
 }

@@ -19,7 +19,7 @@ pub struct Linear<'s> {
     /// The grid that coarse tests are on.
     pub grid: Grid,
     /// What has been proved of the hollow spheres.
-    pub room: Option<&'s Room>,
+    pub room: &'s Room,
     /// The opaque solids that rays start within.
     pub opened: &'s PrimitiveSet,
 }
@@ -30,14 +30,12 @@ impl Linear<'_> {
     /// Where the ray meets the first hollow sphere, if that is known without asking all.
     #[inline]
     fn exit<P: Profile, F: Needs>(&self, ray: &Ray<P::Numbers>) -> Option<Exit<'_, P::Numbers>> {
-        match (P::QUADRATIC, self.room) {
-            (Quadratic::Power, Some(room)) if F::NEEDS.has(Capability::Room) => {
-                let exit = P::Numbers::exit(room, ray.origin, ray.direction)?;
-                // Of the surface that it leaves, the formula has both roots.
-                (!ray.departs_from(exit.wall.primitive)).then_some(exit)
-            }
-            _ => None,
+        if !matches!(P::QUADRATIC, Quadratic::Power) {
+            return None;
         }
+        let exit = P::Numbers::exit(self.room, ray.origin, ray.direction)?;
+        // Of the surface that it leaves, the formula has both roots.
+        (!ray.departs_from(exit.wall.primitive)).then_some(exit)
     }
 
     /// The nearest hit that is nearer than `t_max`, of the primitives of the kinds in `F`; of no primitive where there is none.

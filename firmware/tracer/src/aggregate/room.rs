@@ -56,6 +56,9 @@ pub struct Room {
 }
 
 impl Room {
+    /// What is proved of a scene that is none: nothing, of any point.
+    pub const UNPROVED: &'static Self = &bytemuck::zeroed();
+
     /// Whether all walls are among so many hollow spheres.
     pub(crate) fn is_sound(&self, hollow_spheres: usize) -> bool {
         let mut walls = self.walls.as_flattened().iter();
@@ -122,9 +125,9 @@ impl RoomNumbers for Mixed {
         let point = [0, 1, 2].map(|i| origin[i] + Self::scale(t, direction[i]));
         let within = |i: usize| {
             let above = point[i].to_bits().wrapping_sub(wall.low[i].to_bits());
-            above as u32 <= wall.extent[i].to_bits() as u32
+            (above as u32) < wall.extent[i].to_bits() as u32
         };
-        (within(0) & within(1) & within(2) & (t >= I16F16::ZERO)).then_some(Exit { wall, t, point })
+        ((t.to_bits() as u32) < 1 << 31 && within(0) && within(1) && within(2)).then_some(Exit { wall, t, point })
     }
 
     #[inline]
