@@ -39,10 +39,10 @@ fn a_sphere_is_these_bytes() {
         // One material, and the grid's shift; no hollow sphere, and one solid.
         1 | GRID << 16,
         1 << 16,
-        // Twice a centre of (0, -1, 0) on the grid, turned round; its square less 2 and 7/2 of the longest distance.
-        2 << 16,
+        // A centre of (0, -1, 0) on the grid; a square of less than 2, 4.9 of the longest distance, and 7.
+        0xffff_0000,
         0,
-        (1 - 2 - 16_385i32 * 7 / 2) as u32,
+        -(2 + 16_384i32 * 49 / 10 + 7) as u32,
         0,
         // Centre and radius, and 4 in 32:32.
         0x1_0000,

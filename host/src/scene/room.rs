@@ -158,7 +158,7 @@ fn wall(ball: &Ball, axis: usize, low: [f64; 3], high: [f64; 3]) -> Option<Wall>
         centre: ball.centre,
         place: ball.centre[axis],
         primitive: ball.primitive,
-        reserved: 0,
+        twice_back: ball.centre[axis].checked_mul_int(-2)?,
         power: I32F32::from_bits(square(ball.radius) - square(ball.centre[axis])),
         low: all(low)?,
         extent: all([0, 1, 2].map(|i| high[i] - low[i]))?,

@@ -26,8 +26,8 @@ pub struct Wall {
     pub place: I16F16,
     /// The sphere.
     pub primitive: PrimitiveId,
-    /// Zero.
-    pub reserved: u32,
+    /// Twice the place, times -1.
+    pub twice_back: I16F16,
     /// Its radius squared, less its centre's square.
     pub power: I32F32,
     /// The corner of least coordinates of a box in which every point of this wall is well within all the other spheres.
@@ -120,7 +120,7 @@ impl RoomNumbers for Mixed {
         let centre = wall.place.to_bits();
         let b = ((times(centre, nearest.speed) - along) >> 30) as i32;
         let square = times(o[0], o[0]) + times(o[1], o[1]) + times(o[2], o[2]);
-        let power = wall.power.to_bits() - square + 2 * times(centre, nearest.start);
+        let power = wall.power.to_bits() - (square + times(wall.twice_back.to_bits(), nearest.start));
         let t = I16F16::from_bits(b) + Mixed::near_root(I32F32::from_bits(power + times(b, b)));
         let point = [0, 1, 2].map(|i| origin[i] + Self::scale(t, direction[i]));
         let within = |i: usize| {
