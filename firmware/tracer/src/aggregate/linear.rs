@@ -29,10 +29,7 @@ type Length<P> = <<P as Profile>::Numbers as Formats>::Length;
 impl Linear<'_> {
     /// Where the ray meets the first hollow sphere, if that is known without asking all.
     #[inline]
-    fn exit<P: Profile, F: Needs>(&self, ray: &Ray<P::Numbers>) -> Option<Exit<'_, P::Numbers>> {
-        if !matches!(P::QUADRATIC, Quadratic::Power) {
-            return None;
-        }
+    fn exit<P: Profile>(&self, ray: &Ray<P::Numbers>) -> Option<Exit<'_, P::Numbers>> {
         let exit = P::Numbers::exit(self.room, ray.origin, ray.direction)?;
         // Of the surface that it leaves, the formula has both roots.
         (!ray.departs_from(exit.wall.primitive)).then_some(exit)
@@ -209,10 +206,10 @@ impl Aggregate for Linear<'_> {
         ray: &Ray<P::Numbers>,
         epsilon: Length<P>,
     ) -> Option<Interaction<P::Numbers>> {
-        if !F::NEEDS.has(Capability::Room) {
+        if !F::NEEDS.has(Capability::Room) || matches!(P::QUADRATIC, Quadratic::Textbook) {
             return self.interaction::<P, F>(ray, self.closest::<P, F>(ray, epsilon));
         }
-        let hit = match self.exit::<P, F>(ray) {
+        let hit = match self.exit::<P>(ray) {
             None => self.closest_apart::<P, F>(ray, epsilon),
             Some(exit) => {
                 let within = self.closest_from::<P, Within<F>>(ray, epsilon, exit.t);
