@@ -55,7 +55,7 @@ impl Proved {
         let telling = solid
             .iter()
             .zip(&reaches)
-            .filter(|(sphere, reach)| is_telling(grid, sphere, **reach));
+            .filter(|(sphere, reach)| is_telling(grid, sphere, **reach, !hollow.is_empty()));
         let coarse = 2 * telling.count() > solid.len();
         let with_coarse = |(sphere, reach): (SphereRecord, I16F16)| SolidSphere {
             coarse: CoarseSphere::new(grid, sphere.centre, sphere.square, reach),
@@ -84,11 +84,18 @@ impl Proved {
     }
 }
 
-/// Whether a rough look tells most rays that miss a solid, and most rays miss it. Where rays start that far from it, a large one is
-/// often met, and then the look was for nothing.
-fn is_telling(grid: Grid, sphere: &SphereRecord, reach: I16F16) -> bool {
+/// Whether a rough look tells most rays that miss a solid, and most rays miss it. Where rays start next to it, a large one is
+/// often met, and then the look was for nothing. Under the sky nobody knows where they start: as near as a few radii, it may be.
+fn is_telling(grid: Grid, sphere: &SphereRecord, reach: I16F16, in_room: bool) -> bool {
+    /// From where a sphere takes half as much again for a hit as it should.
+    const NEAR: i32 = 5;
     let coarse = CoarseSphere::new(grid, sphere.centre, sphere.square, reach);
-    coarse.is_telling(grid, sphere.square) && sphere.radius <= reach / 4
+    let reach = if in_room {
+        reach
+    } else {
+        reach.min(sphere.radius.saturating_mul_int(NEAR))
+    };
+    coarse.is_telling(grid, reach)
 }
 
 /// A bound on how far from a point rays start, wherever the camera is.

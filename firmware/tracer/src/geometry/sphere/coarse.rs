@@ -65,10 +65,13 @@ impl CoarseSphere {
         }
     }
 
-    /// Whether it tells most misses of the sphere with this squared radius: what it takes for one has at most twice the sphere's
-    /// area.
-    pub fn is_telling(&self, grid: Grid, square: I32F32) -> bool {
-        -i64::from(self.inside) <= square.to_bits() >> (2 * grid.shift()) << 1
+    /// Whether it tells most rays that miss it, which start up to `farthest` from its centre: what it takes for a hit is a sphere of at
+    /// most a fourth of that for a radius.
+    pub fn is_telling(&self, grid: Grid, farthest: I16F16) -> bool {
+        let longest = i64::from(farthest.to_bits() >> grid.shift()) + 1;
+        // The discriminant may be too large by twice a projection times what that is off.
+        let taken = i64::from(2 * SLACK) * longest - i64::from(self.inside);
+        16 * taken <= longest * longest
     }
 
     /// `false` only where the ray surely does not meet the sphere nearer than `t_max`: it starts outside, and passes by, leaves it
