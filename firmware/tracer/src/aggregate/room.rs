@@ -127,7 +127,11 @@ impl RoomNumbers for Mixed {
             let above = point[i].to_bits().wrapping_sub(wall.low[i].to_bits());
             (above as u32) < wall.extent[i].to_bits() as u32
         };
-        ((t.to_bits() as u32) < 1 << 31 && within(0) && within(1) && within(2)).then_some(Exit { wall, t, point })
+        ((t.to_bits() as u32) < 1 << 31 && within(0) && within(1) && within(2)).then_some(Exit {
+            wall,
+            t,
+            point,
+        })
     }
 
     #[inline]

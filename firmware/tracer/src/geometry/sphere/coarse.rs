@@ -84,7 +84,8 @@ impl CoarseSphere {
         if outside < 0 {
             return true;
         }
-        let b = halves::wrapping_lower_upper(halves::wrapping_dot(SLACK << 14, xy, ray.direction), z, ray.z) >> 14;
+        let b = halves::wrapping_lower_upper(halves::wrapping_dot(SLACK << 14, xy, ray.direction), z, ray.z)
+            >> 14;
         let discriminant = b * b - outside;
         if b < 0 || discriminant < 0 {
             return false;
