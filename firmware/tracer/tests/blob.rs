@@ -151,7 +151,7 @@ fn a_room_has_walls_that_there_are() {
         bytes[4] |= 1 << Capability::Room as u8;
         let mut blob = Blob(vec![0; bytes.len() / 8]);
         blob.bytes_mut().copy_from_slice(&bytes);
-        Scene::view(blob.bytes(), Capabilities::ALL).map(|scene| *scene.aggregate.room == room)
+        Scene::view(blob.bytes(), Capabilities::ALL).map(|scene| scene.aggregate.room == Some(&room))
     };
     assert_eq!(with(0), Ok(true));
     assert_eq!(with(1), Err(BlobError::BadShape));

@@ -19,7 +19,7 @@ pub struct Linear<'s> {
     /// The grid that coarse tests are on.
     pub grid: Grid,
     /// What has been proved of the hollow spheres.
-    pub room: &'s Room,
+    pub room: Option<&'s Room>,
     /// The opaque solids that rays start within.
     pub opened: &'s PrimitiveSet,
 }
@@ -30,7 +30,7 @@ impl Linear<'_> {
     /// Where the ray meets the first hollow sphere, if that is known without asking all.
     #[inline]
     fn exit<P: Profile>(&self, ray: &Ray<P::Numbers>) -> Option<Exit<'_, P::Numbers>> {
-        let exit = P::Numbers::exit(self.room, ray.origin, ray.direction)?;
+        let exit = P::Numbers::exit(self.room?, ray.origin, ray.direction)?;
         // Of the surface that it leaves, the formula has both roots.
         (!ray.departs_from(exit.wall.primitive)).then_some(exit)
     }

@@ -56,9 +56,6 @@ pub struct Room {
 }
 
 impl Room {
-    /// What is proved of a scene that is none: nothing, of any point.
-    pub const UNPROVED: &'static Self = &bytemuck::zeroed();
-
     /// Whether all walls are among so many hollow spheres.
     pub(crate) fn is_sound(&self, hollow_spheres: usize) -> bool {
         let mut walls = self.walls.as_flattened().iter();

@@ -84,10 +84,7 @@ impl<'s> Scene<'s> {
         if !image.covers(header.needs) {
             return Err(BlobError::NotInThisImage);
         }
-        let room = match take_records(&mut bytes, header.needs.has(Capability::Room).into())? {
-            [room] => room,
-            _ => Room::UNPROVED,
-        };
+        let room = take_records(&mut bytes, header.needs.has(Capability::Room).into())?.first();
         let scene = Self {
             aggregate: Linear {
                 room,
@@ -113,7 +110,11 @@ impl<'s> Scene<'s> {
             }
         }
         let hollow_spheres = self.aggregate.primitives.hollow_spheres.len();
-        if needs.has(Capability::Room) && !self.aggregate.room.is_sound(hollow_spheres) {
+        if self
+            .aggregate
+            .room
+            .is_some_and(|room| !room.is_sound(hollow_spheres))
+        {
             return Err(BlobError::BadShape);
         }
         let mut check = Check {
