@@ -32,7 +32,7 @@ pub struct Wall {
     pub power: I32F32,
     /// The corner of least coordinates of a box in which every point of this wall is well within all the other spheres.
     pub low: [I16F16; 3],
-    /// The box's edges.
+    /// The box's edges; a point at their far end is not in it.
     pub extent: [I16F16; 3],
     /// 1 / r in 0:44 where the wall is flat: so large that a hit's rounding is nothing beside its radius. Else 0.
     pub reciprocal: i32,
@@ -124,11 +124,8 @@ impl RoomNumbers for Mixed {
             let above = point[i].to_bits().wrapping_sub(wall.low[i].to_bits());
             (above as u32) < wall.extent[i].to_bits() as u32
         };
-        ((t.to_bits() as u32) < 1 << 31 && within(0) && within(1) && within(2)).then_some(Exit {
-            wall,
-            t,
-            point,
-        })
+        // A start that rounding has put beyond the wall meets it behind itself.
+        (t >= I16F16::ZERO && within(0) && within(1) && within(2)).then_some(Exit { wall, t, point })
     }
 
     #[inline]

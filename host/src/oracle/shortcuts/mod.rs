@@ -1,8 +1,8 @@
 //! The plain loop as an oracle: whatever a core leaves out, it must meet the surface that it would have met.
 //!
 //! Rays of real paths, and between them the hard ones: flat along their surface, along the axes, and from starts that are a
-//! little beyond their surface. A ray's two surfaces are the
-//! same primitive's, at the same place and with the same normal but for rounding; or those of two primitives that lie in one place.
+//! little beyond their surface. A ray's two surfaces are the same primitive's, at the same place and with the same normal but for
+//! rounding; or those of two primitives that lie in one place.
 
 mod scenes;
 
