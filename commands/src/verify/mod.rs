@@ -1,6 +1,7 @@
 //! `cargo xtask verify`
 
 mod shortcuts;
+mod stability;
 
 use std::process::ExitCode;
 
@@ -8,8 +9,8 @@ use anyhow::ensure;
 use host::bench::operations::Entry;
 use host::bench::operations::record::{Record, sources_sha256};
 use host::bench::operations::table::figure;
-use host::bench::operations::verify::{Depth, Verdict, bar, verify};
-use host::platform::console::say;
+use host::bench::operations::verify::{Depth, Verdict, verify};
+use host::platform::console::{bar, say};
 
 /// Arguments of `verify`.
 #[derive(clap::Args)]
@@ -33,6 +34,8 @@ pub(crate) struct Arguments {
 enum Part {
     /// Compare what cores leave out with the plain loop: rays of the scenes and of random ones must meet the same surfaces
     Shortcuts(shortcuts::Arguments),
+    /// Count, in hard cases by the million, how wrong arithmetic is: docs/stability.md has the tables
+    Stability(stability::Arguments),
 }
 
 /// Compares a sample of every operation, as `cargo xtask test` does.
@@ -46,8 +49,10 @@ pub(crate) fn sampled() -> anyhow::Result<ExitCode> {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
-    if let Some(Part::Shortcuts(arguments)) = &arguments.what {
-        return shortcuts::run(arguments);
+    match &arguments.what {
+        Some(Part::Shortcuts(arguments)) => return shortcuts::run(arguments),
+        Some(Part::Stability(arguments)) => return stability::run(arguments),
+        None => {}
     }
     let depth = if arguments.exhaustive {
         Depth::Exhaustive

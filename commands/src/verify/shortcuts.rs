@@ -4,9 +4,8 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::{Context, ensure};
-use host::bench::operations::verify::bar;
 use host::oracle::shortcuts;
-use host::platform::console::say;
+use host::platform::console::{bar, say};
 use host::platform::workspace;
 use host::scene::{Scene, compile};
 

@@ -16,7 +16,7 @@ use crate::platform::file::{WriteError, write_whole};
 pub(crate) type Canvas<'a> = DrawingArea<BitMapBackend<'a>, Shift>;
 pub(crate) type DrawingError = Box<dyn std::error::Error + Send + Sync>;
 
-const FONT: &str = "DejaVu Sans";
+pub(crate) const FONT: &str = "DejaVu Sans";
 /// Text sizes in pixels; even, because plotters truncates the baseline of odd ones to uneven lines.
 pub(crate) const LARGE: u32 = 20;
 pub(crate) const NORMAL: u32 = 16;

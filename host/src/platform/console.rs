@@ -13,6 +13,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use clap::Parser;
+use indicatif::{ProgressBar, ProgressStyle};
 
 /// How long nothing may be said.
 const SILENCE: Duration = Duration::from_secs(5);
@@ -58,6 +59,14 @@ pub fn in_full(error: &dyn Error) -> String {
 pub fn note(text: impl Display) {
     // In one piece, so that no other program's line comes between.
     let _nobody_watches = io::stderr().write_all(format!("{text}\n").as_bytes());
+}
+
+/// A bar on the terminal, with a message in front.
+pub fn bar(message: &'static str) -> ProgressBar {
+    let style = ProgressStyle::with_template("{msg} {bar:40} {percent:>3} %, {eta} to go");
+    ProgressBar::new(0)
+        .with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+        .with_message(message)
 }
 
 /// Does what may take its time; whoever watches is told now and then that it goes on, in the words of `what`.

@@ -155,7 +155,8 @@ fn film_scale(forward: [f64; 3], right: [f64; 3], up: [f64; 3], width: u16, heig
     1.99 / largest
 }
 
-fn record(sphere: &Sphere, material: MaterialId) -> SphereRecord {
+/// The record of a sphere.
+pub(crate) fn record(sphere: &Sphere, material: MaterialId) -> SphereRecord {
     let radius = q16(sphere.radius);
     let bits = radius.to_bits();
     // The shift that leaves the radius 30 bits: a point of the sphere then has no more either. From 16,384 on it has 31.

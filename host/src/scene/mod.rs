@@ -18,6 +18,7 @@ mod vector;
 
 use std::path::{Path, PathBuf};
 
+pub(crate) use compile::record as sphere_record;
 pub use compile::{Blob, CompiledScene, compile};
 pub use unit_size::samples_per_unit;
 

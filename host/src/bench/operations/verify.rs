@@ -8,7 +8,7 @@ use std::any::{Any, TypeId};
 use std::iter;
 
 use fixedmath::random::Lcg64;
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::ProgressBar;
 use operations::{
     Format, Function, Group, Input, Maker, Number, Operation, OperationInput, Variant, Visitor,
 };
@@ -114,14 +114,6 @@ pub trait Progress {
 impl Progress for () {
     fn tasks(&self, _tasks: u64) {}
     fn done(&self) {}
-}
-
-/// A bar on the terminal, with a message in front.
-pub fn bar(message: &'static str) -> ProgressBar {
-    let style = ProgressStyle::with_template("{msg} {bar:40} {percent:>3} %, {eta} to go");
-    ProgressBar::new(0)
-        .with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
-        .with_message(message)
 }
 
 impl Progress for ProgressBar {

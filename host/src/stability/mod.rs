@@ -1,0 +1,18 @@
+//! Numerical stability: the hard cases, counted in millions, and what came of them as tables and plots.
+//!
+//! Each part is a file that measures one thing. It ends in tables for `docs/stability.md`, plots where people would rather look, and
+//! faults: what should have held and did not. To add a part is a module and a line in [`PARTS`].
+
+mod draw;
+mod exact;
+mod intersection;
+mod part;
+mod plot;
+mod table;
+
+pub use part::{Effort, Error, Findings, Part};
+pub use plot::Plot;
+pub use table::Table;
+
+/// All parts, in the order of `docs/stability.md`.
+pub const PARTS: &[Part] = &[intersection::PART];

@@ -1,0 +1,62 @@
+//! What a part is given, and what it gives.
+
+use indicatif::ProgressBar;
+
+use super::{Plot, Table};
+
+/// Why a part could not be measured.
+pub type Error = Box<dyn std::error::Error + Send + Sync>;
+
+/// Something to measure.
+pub struct Part {
+    /// Its name on the command line and in the names of its files.
+    pub name: &'static str,
+    /// What it measures, in a line.
+    pub about: &'static str,
+    /// Measures it.
+    pub measure: fn(&Effort) -> Result<Findings, Error>,
+}
+
+/// How much work a part may do, and who watches.
+pub struct Effort {
+    quick: bool,
+    bar: ProgressBar,
+}
+
+impl Effort {
+    /// The full work, or a hundredth of it where it is to be `quick`. The bar is told of work done.
+    pub fn new(quick: bool, bar: ProgressBar) -> Self {
+        Self { quick, bar }
+    }
+
+    /// Whether only a hundredth is wanted.
+    pub fn is_quick(&self) -> bool {
+        self.quick
+    }
+
+    /// What is to be done of `full` work: at least 1.
+    pub fn of(&self, full: u64) -> u64 {
+        if self.quick { (full / 100).max(1) } else { full }
+    }
+
+    /// So much more work is ahead, in whatever unit the part counts.
+    pub fn expect(&self, work: u64) {
+        self.bar.inc_length(work);
+    }
+
+    /// So much of it is done.
+    pub fn done(&self, work: u64) {
+        self.bar.inc(work);
+    }
+}
+
+/// What a part has found.
+#[derive(Debug, Default)]
+pub struct Findings {
+    /// What it counted.
+    pub tables: Vec<Table>,
+    /// The same to look at.
+    pub plots: Vec<Plot>,
+    /// What should have held and did not, a line each.
+    pub faults: Vec<String>,
+}
