@@ -3,6 +3,8 @@
 pub mod compare;
 pub mod difference;
 pub mod direct;
+pub mod divergence;
+pub mod equivalence;
 pub mod lockstep;
 pub mod noise;
 pub mod reference;

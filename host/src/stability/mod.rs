@@ -3,6 +3,7 @@
 //! Each part is a file that measures one thing. It ends in tables for `docs/stability.md`, plots where people would rather look, and
 //! faults: what should have held and did not. To add a part is a module and a line in [`PARTS`].
 
+mod divergence;
 mod draw;
 mod exact;
 mod intersection;
@@ -15,4 +16,4 @@ pub use plot::Plot;
 pub use table::Table;
 
 /// All parts, in the order of `docs/stability.md`.
-pub const PARTS: &[Part] = &[intersection::PART];
+pub const PARTS: &[Part] = &[intersection::PART, divergence::PART];

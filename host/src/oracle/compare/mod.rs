@@ -11,6 +11,7 @@
 //!
 //! A picture without a variance counts as exact. A pixel that is missing on either side is left out and counted.
 
+mod pixels;
 #[cfg(test)]
 mod tests;
 mod tiles;
@@ -18,6 +19,7 @@ mod tiles;
 use statrs::distribution::{ChiSquared, ContinuousCDF, Normal};
 
 use crate::image::picture::{Estimate, displayed};
+pub use pixels::{PixelTest, Pixels};
 pub use tiles::{FALSE_ALARM, SIDE, Tile, Tiles};
 
 /// The verdict on a picture.
@@ -45,8 +47,10 @@ pub struct Comparison {
     pub psnr_db: Option<f64>,
     /// Tile by tile.
     pub tiles: Tiles,
-    /// Pixel by pixel; `None` when neither side has a variance, or too few pixels or samples of them for a test.
+    /// All pixels' p-values together; `None` when neither side has a variance, or too few pixels or samples of them for a test.
     pub uniformity: Option<Uniformity>,
+    /// Pixel by pixel; `None` when neither side has a variance, or too few samples of them for a test.
+    pub pixels: Option<Pixels>,
     /// Pixels that both pictures have.
     pub compared: usize,
     /// Pixels that one of them lacks.
@@ -103,6 +107,9 @@ pub enum CompareError {
         /// Width and height of the reference.
         reference: (u16, u16),
     },
+    /// Every pixel is wanted, and some are not there.
+    #[error("{0} pixels of the picture or its reference are missing; render both to the end")]
+    Incomplete(usize),
     /// No pixel is in both.
     #[error("the picture and the reference have no pixel in common; let the render get further")]
     NothingInCommon,
@@ -157,6 +164,7 @@ pub fn compare(image: &Estimate, reference: &Estimate) -> Result<Comparison, Com
     let relative = |value: f64| (reference_level > 0.0).then_some(value / reference_level);
     let squared_error = squared_error(&present);
     let noisy = image.variance.is_some() || reference.variance.is_some();
+    let tested = noisy && nearly_normal(image) && nearly_normal(reference);
     Ok(Comparison {
         bias: relative(mean.iter().sum::<f64>() - reference_level),
         bias_standard_error: relative(error).filter(|_| noisy),
@@ -168,8 +176,8 @@ pub fn compare(image: &Estimate, reference: &Estimate) -> Result<Comparison, Com
         max_abs: present.iter().map(Pair::largest_difference).fold(0.0, f64::max),
         psnr_db: psnr_db(&present),
         tiles: tiles::test(&pixels, size, reference_level / 3.0),
-        uniformity: uniformity(&present)
-            .filter(|_| noisy && nearly_normal(image) && nearly_normal(reference)),
+        uniformity: uniformity(&present).filter(|_| tested),
+        pixels: tested.then(|| pixels::test(&pixels, size.0)),
         compared: present.len(),
         missing: pixels.len() - present.len(),
     })

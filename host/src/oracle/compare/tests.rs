@@ -145,14 +145,36 @@ fn noise_alone_raises_no_more_alarms_than_stated() {
     let runs = 300;
     let mut alarms = 0;
     let mut uneven = 0;
+    let mut pixels = 0;
     for seed in 0..runs {
         let comparison = compare(&estimate(2 * seed, unchanged), &estimate(2 * seed + 1, unchanged)).unwrap();
         alarms += usize::from(comparison.tiles.failed().count() > 0);
         uneven += usize::from(comparison.uniformity.unwrap().p_value < 0.01);
+        pixels += usize::from(!comparison.pixels.unwrap().failed.is_empty());
     }
     // 3 expected at most of each; 11 or more happen once in 3,000 such tests.
     assert!(alarms <= 10, "{alarms} of {runs}");
     assert!(uneven <= 10, "{uneven} of {runs}");
+    assert!(pixels <= 10, "{pixels} of {runs}");
+}
+
+#[test]
+fn one_wrong_pixel_is_named() {
+    let wrong = |x: u16, y: u16, [r, g, b]: [f64; 3]| {
+        let off = if (x, y) == (17, 5) { 10.0 * NOISE } else { 0.0 };
+        [r, g, b + off]
+    };
+    let found = compare(&estimate(1, wrong), &estimate(2, unchanged))
+        .unwrap()
+        .pixels
+        .unwrap();
+    let failed: Vec<_> = found
+        .failed
+        .iter()
+        .map(|test| (test.x, test.y, test.channel))
+        .collect();
+    assert_eq!(failed, [(17, 5, 2)]);
+    assert_eq!((found.tested, found.max_z), (3 * 64 * 48, found.failed[0].z));
 }
 
 #[test]

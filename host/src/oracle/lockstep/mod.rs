@@ -4,6 +4,9 @@
 //! the two until rounding sends a path another way. It shares the tracer's formulas, so a wrong formula is not seen
 //! here; [`crate::oracle::reference`] is there for that.
 
+mod paired;
+pub(crate) mod samples;
+
 use rayon::prelude::*;
 use tracer::camera::Camera;
 use tracer::integrator::{Integrator, Path};
@@ -13,6 +16,8 @@ use tracer::unit::{Plan, walk};
 
 use crate::image::picture::{Estimate, Picture};
 use crate::scene::CompiledScene;
+
+pub use paired::{Paired, paired};
 
 /// Profile `P` in double precision: its random numbers, its formulas, exact arithmetic.
 pub type Lockstep<P> = floating::Lockstep<P, f64>;

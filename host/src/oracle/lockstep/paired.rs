@@ -1,0 +1,95 @@
+//! A picture and its double, sample by sample.
+//!
+//! In a picture of [`super::render`], a path that draws more random numbers than its double shifts those of all samples after it in
+//! its unit: most of the difference of two such pictures is that noise. Here each sample of the double begins with the random
+//! numbers that the picture's own begins with, so that only paths which part differ, and each sample by itself.
+
+use rayon::prelude::*;
+use tracer::camera::Camera;
+use tracer::integrator::{Integrator, Path};
+use tracer::material::RadianceNumbers;
+use tracer::profile::Profile;
+use tracer::random::Random;
+use tracer::scene::All;
+use tracer::unit::Plan;
+
+use super::samples::samples;
+use super::{Lockstep, Moments};
+use crate::image::picture::{Estimate, Picture};
+use crate::scene::CompiledScene;
+
+/// A picture, its double, and how sure their difference is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Paired {
+    /// The picture. A fleet's is the same but for the rounding of its sums: a unit's to 2^-16.
+    pub picture: Estimate,
+    /// The same samples in double precision.
+    pub double: Estimate,
+    /// Variance of the mean of each pixel's differences, by channel.
+    pub variance: Vec<[f64; 3]>,
+}
+
+/// A pixel's samples, those of its double, and their differences.
+#[derive(Clone, Copy, Default)]
+struct Pixel {
+    picture: Moments,
+    double: Moments,
+    difference: Moments,
+}
+
+/// Renders `plan` by profile `P` and in double precision, on all host cores.
+pub fn paired<P: Profile<Random: Clone>>(compiled: &CompiledScene, plan: &Plan) -> Paired {
+    let scene = compiled.view();
+    let paths = (Path::<P, All>::new(plan), Path::<Lockstep<P>, All>::new(plan));
+    let cameras = (Camera::new(&compiled.camera), Camera::new(&compiled.camera));
+    let unit = 2f64.powi(-compiled.exponent);
+    let spans: Vec<Vec<Pixel>> = (0..plan.spans())
+        .into_par_iter()
+        .map(|span| {
+            let mut pixels = vec![Pixel::default(); usize::from(plan.extent(span).pixels)];
+            for pass in 0..plan.passes() {
+                let id = pass * plan.spans() + span;
+                let mut random = P::Random::for_unit(plan.seed, id);
+                for (pixel, [column, row]) in samples(plan, id) {
+                    let mut doubles = random.clone();
+                    let ray = cameras.0.ray(column, row, &mut random);
+                    let sample = paths.0.sample(&scene, ray, &mut random);
+                    let ray = cameras.1.ray(column, row, &mut doubles);
+                    let double = paths.1.sample(&scene, ray, &mut doubles);
+                    let radiance = sample
+                        .radiance
+                        .map(|radiance| P::Numbers::film_sum(radiance).to_num::<f64>() * unit);
+                    pixels[pixel].add(radiance, double.radiance.map(|radiance| radiance * unit));
+                }
+            }
+            pixels
+        })
+        .collect();
+    let pixels = spans.concat();
+    let estimate = |moments: fn(&Pixel) -> &Moments| {
+        let means = pixels.iter().map(|pixel| Some(moments(pixel).mean()));
+        let variance = pixels.iter().map(|pixel| moments(pixel).variance_of_mean());
+        Estimate {
+            picture: Picture::new(plan.width, plan.height, means.collect()),
+            variance: Some(variance.collect()),
+            spp: Some(plan.spp),
+        }
+    };
+    Paired {
+        picture: estimate(|pixel| &pixel.picture),
+        double: estimate(|pixel| &pixel.double),
+        variance: pixels
+            .iter()
+            .map(|pixel| pixel.difference.variance_of_mean())
+            .collect(),
+    }
+}
+
+impl Pixel {
+    fn add(&mut self, picture: [f64; 3], double: [f64; 3]) {
+        self.picture.add(picture);
+        self.double.add(double);
+        self.difference
+            .add([0, 1, 2].map(|channel| picture[channel] - double[channel]));
+    }
+}
