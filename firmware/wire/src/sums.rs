@@ -1,13 +1,14 @@
 //! Sums of radiance, packed.
 //!
-//! One pixel is three sums, red, green and blue, each an unsigned 40-bit integer (24:16), little-endian: 15 bytes. Scenes limit
-//! emission to less than 4096 and a packet holds at most 4096 samples of a pixel, so a sum stays below 2^24 and never saturates.
+//! One pixel is three sums, red, green and blue, each an unsigned 40-bit integer (24:16), little-endian: 15 bytes. The host scales a
+//! scene's light so that sums stay below 2^24 but with a chance of 2^-96. One that does not is sent as [`SUM_MAX`], which says so.
 
 use core::fmt;
 
 use crate::{DecodeError, MAX_PIXELS};
 
-/// The greatest sum the wire can carry: 2^40 - 1, in units of 2^-16.
+/// The greatest sum the wire can carry: 2^40 - 1, in units of 2^-16. It stands for itself and for all that is greater: who receives it
+/// must take it for saturated.
 pub const SUM_MAX: u64 = (1 << 40) - 1;
 
 /// Bytes of one sum.
@@ -21,8 +22,6 @@ const PIXEL_LEN: usize = 3 * SUM_LEN;
 pub enum SumsError {
     /// There are no pixels, or more than [`MAX_PIXELS`].
     Pixels,
-    /// A sum is greater than [`SUM_MAX`]: the scene or the plan breaks the limits above.
-    TooLarge,
 }
 
 impl SumsError {
@@ -30,9 +29,6 @@ impl SumsError {
     pub const fn as_str(self) -> &'static str {
         match self {
             Self::Pixels => "a packet carries 1 to 16 pixels",
-            Self::TooLarge => {
-                "a pixel's sum does not fit 40 bits: more samples or more light than the wire allows"
-            }
         }
     }
 }
@@ -56,17 +52,14 @@ impl PixelSums {
     /// Bytes that the most pixels take.
     pub(crate) const MAX_LEN: usize = MAX_PIXELS * PIXEL_LEN;
 
-    /// Packs the sums of `pixels`.
+    /// Packs the sums of `pixels`; what is greater than [`SUM_MAX`] becomes that.
     pub fn new(pixels: &[[u64; 3]]) -> Result<Self, SumsError> {
         let mut packed = [0; Self::MAX_LEN];
         if pixels.is_empty() || pixels.len() > MAX_PIXELS {
             return Err(SumsError::Pixels);
         }
         for (slot, &sum) in packed.chunks_exact_mut(SUM_LEN).zip(pixels.iter().flatten()) {
-            if sum > SUM_MAX {
-                return Err(SumsError::TooLarge);
-            }
-            slot.copy_from_slice(&sum.to_le_bytes()[..SUM_LEN]);
+            slot.copy_from_slice(&sum.min(SUM_MAX).to_le_bytes()[..SUM_LEN]);
         }
         Ok(Self {
             packed,

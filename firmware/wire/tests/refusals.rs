@@ -113,12 +113,19 @@ fn pixel_and_sample_counts_are_checked() {
 }
 
 #[test]
-fn sums_that_do_not_fit_are_refused_not_clipped() {
+fn sums_that_do_not_fit_are_the_greatest_there_is_and_say_so() {
     assert!(PixelSums::new(&[[wire::SUM_MAX; 3]; 16]).is_ok());
-    assert_eq!(
-        PixelSums::new(&[[0, wire::SUM_MAX + 1, 0]]),
-        Err(SumsError::TooLarge)
-    );
+    // Not what is left of them in 40 bits.
+    for sum in [
+        wire::SUM_MAX - 1,
+        wire::SUM_MAX,
+        wire::SUM_MAX + 1,
+        1 << 48,
+        u64::MAX,
+    ] {
+        let sent = PixelSums::new(&[[0, sum, 0]]).expect("a pixel");
+        assert_eq!(sent.iter().next(), Some([0, sum.min(wire::SUM_MAX), 0]));
+    }
     assert_eq!(PixelSums::new(&[[0; 3]; 17]), Err(SumsError::Pixels));
     assert_eq!(PixelSums::new(&[]), Err(SumsError::Pixels));
 }

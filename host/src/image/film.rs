@@ -1,9 +1,12 @@
 //! The film: integer sums, so that the picture does not depend on who delivered what first.
 //!
-//! A core sends each pixel's radiance as 24:16 sums over its samples. The film adds them up in 64 bits: addition of
-//! integers commutes and loses nothing, and so the same units give the same film in any order.
+//! A core sends each pixel's radiance as 24:16 sums over its samples. The film adds them up in 128 bits, where all the packets of
+//! 2^88 units have room: addition of integers commutes and loses nothing, and so the same units give the same film in any order.
+//!
+//! A sum that does not fit its packet arrives as the greatest there is ([`wire::SUM_MAX`]). The film adds that, and counts it.
 
 use sha2::{Digest, Sha256};
+use wire::SUM_MAX;
 
 use crate::image::picture::Picture;
 
@@ -16,8 +19,9 @@ pub struct Film {
     width: u16,
     height: u16,
     exponent: i32,
-    sums: Vec<[u64; 3]>,
-    counts: Vec<u32>,
+    sums: Vec<[u128; 3]>,
+    counts: Vec<u64>,
+    saturated: u64,
 }
 
 /// Why a unit's sums were not added. The film is as it was before.
@@ -35,12 +39,6 @@ pub enum FilmError {
         /// Pixels of the film.
         film: usize,
     },
-    /// A sum or a count would not fit; only a free-running mode left alone for months gets here.
-    #[error("the film is full at pixel {pixel}; end the render")]
-    Full {
-        /// Row-major index of the pixel.
-        pixel: usize,
-    },
 }
 
 impl Film {
@@ -53,6 +51,7 @@ impl Film {
             exponent: 0,
             sums: vec![[0; 3]; pixels],
             counts: vec![0; pixels],
+            saturated: 0,
         }
     }
 
@@ -79,30 +78,24 @@ impl Film {
         else {
             return Err(outside);
         };
-        // Nothing is written before everything is known to fit.
-        for (offset, ((sum, count), new)) in sums.iter().zip(counts.iter()).zip(run).enumerate() {
-            let sums_fit = sum
-                .iter()
-                .zip(new)
-                .all(|(sum, new)| sum.checked_add(*new).is_some());
-            if !sums_fit || count.checked_add(samples).is_none() {
-                return Err(FilmError::Full {
-                    pixel: start + offset,
-                });
-            }
-        }
         for ((sum, count), new) in sums.iter_mut().zip(counts).zip(run) {
-            for (sum, new) in sum.iter_mut().zip(new) {
-                *sum += new;
+            for (sum, &new) in sum.iter_mut().zip(new) {
+                *sum += u128::from(new);
+                self.saturated += u64::from(new >= SUM_MAX);
             }
-            *count += samples;
+            *count += u64::from(samples);
         }
         Ok(())
     }
 
     /// Samples of all pixels.
     pub fn samples(&self) -> u64 {
-        self.counts.iter().map(|&count| u64::from(count)).sum()
+        self.counts.iter().sum()
+    }
+
+    /// Sums that came at the greatest value a packet holds: there the picture is darker than it should be.
+    pub fn saturated(&self) -> u64 {
+        self.saturated
     }
 
     /// Pixels without a sample.
@@ -114,22 +107,29 @@ impl Film {
     pub fn picture(&self) -> Picture {
         let scale = 2f64.powi(-(FRACTION_BITS + self.exponent));
         let pixels = self.sums.iter().zip(&self.counts).map(|(sum, &count)| {
-            (count > 0).then(|| sum.map(|component| component as f64 * scale / f64::from(count)))
+            (count > 0).then(|| sum.map(|component| component as f64 * scale / count as f64))
         });
         Picture::new(self.width, self.height, pixels.collect())
     }
 
     /// SHA-256, in hexadecimal, over width and height (u32) and then every pixel's three sums (u64) and count (u32), all
-    /// little-endian.
+    /// little-endian; over all of them in twice the bytes where one needs more.
     pub fn sha256(&self) -> String {
         let mut hash = Sha256::new();
         hash.update(u32::from(self.width).to_le_bytes());
         hash.update(u32::from(self.height).to_le_bytes());
+        let fits = self.counts.iter().all(|&count| u32::try_from(count).is_ok())
+            && self
+                .sums
+                .as_flattened()
+                .iter()
+                .all(|&sum| u64::try_from(sum).is_ok());
+        let share = if fits { 2 } else { 1 };
         for (sum, count) in self.sums.iter().zip(&self.counts) {
             for component in sum {
-                hash.update(component.to_le_bytes());
+                hash.update(&component.to_le_bytes()[..16 / share]);
             }
-            hash.update(count.to_le_bytes());
+            hash.update(&count.to_le_bytes()[..8 / share]);
         }
         hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
     }
@@ -199,20 +199,68 @@ mod tests {
         assert_eq!(film.picture().pixels(), [Some([unit, unit / 2.0, unit / 4.0])]);
     }
 
+    /// The published pictures' 20,000 samples in a light of 12, by units of 64: the last one has 32.
     #[test]
-    fn the_brightest_light_does_not_saturate() {
+    fn twenty_thousand_samples_of_the_light_lose_nothing() {
         let mut film = Film::new(1, 1);
-        let unit = (12u64 * 4096) << FRACTION_BITS;
-        for _ in 0..1000 {
-            film.add(0, 4096, &[[unit; 3]]).unwrap();
+        for pass in 0..20_000u64.div_ceil(64) {
+            let samples = (20_000 - 64 * pass).min(64);
+            film.add(0, samples as u32, &[[(12 * samples) << FRACTION_BITS; 3]])
+                .unwrap();
         }
+        assert_eq!(film.sums, [[(12 * 20_000) << FRACTION_BITS; 3]]);
         assert_eq!(film.picture().pixels(), [Some([12.0; 3])]);
+        assert_eq!((film.samples(), film.saturated()), (20_000, 0));
+    }
+
+    /// As many samples of one pixel as a plan can name and more, each of the most light that fits a packet of four.
+    #[test]
+    fn four_thousand_million_samples_lose_nothing() {
+        let brightest = (SUM_MAX - 1) / 4;
+        let (samples, packets) = (1u64 << 32, 1u128 << 30);
+        let mut film = Film {
+            sums: vec![[packets * u128::from(4 * brightest), 1, 0]],
+            counts: vec![samples],
+            ..Film::new(1, 1)
+        };
+        film.add(0, 4, &[[4 * brightest, 1, 0]]).unwrap();
+        assert_eq!(film.sums, [[(packets + 1) * u128::from(4 * brightest), 2, 0]]);
+        assert_eq!((film.samples(), film.saturated()), (samples + 4, 0));
+        let mean = [
+            brightest as f64 / 65536.0,
+            2.0 / 65536.0 / (samples + 4) as f64,
+            0.0,
+        ];
+        assert_eq!(film.picture().pixels(), [Some(mean)]);
+    }
+
+    /// What needs more bytes has a hash over more bytes, and is not taken for what is left of it in fewer.
+    #[test]
+    fn large_sums_have_a_hash_of_their_own() {
+        let film = |sum: u128, count: u64| Film {
+            sums: vec![[sum, 0, 0]],
+            counts: vec![count],
+            ..Film::new(1, 1)
+        };
+        let small = film(5, 7).sha256();
+        assert_ne!(film(5 + (1 << 64), 7).sha256(), small);
+        assert_ne!(film(5, 7 + (1 << 32)).sha256(), small);
+    }
+
+    #[test]
+    fn saturated_sums_are_counted() {
+        let mut film = Film::new(2, 1);
+        film.add(0, 4, &[[SUM_MAX - 1, SUM_MAX, 0], [SUM_MAX; 3]])
+            .unwrap();
+        film.add(1, 4, &[[SUM_MAX, 0, 0]]).unwrap();
+        assert_eq!(film.saturated(), 5);
+        assert_eq!(film.sums[1][0], 2 * u128::from(SUM_MAX));
     }
 
     #[test]
     fn what_does_not_fit_changes_nothing() {
         let mut film = Film::new(2, 1);
-        film.add(0, 4, &[[1; 3], [u64::MAX; 3]]).unwrap();
+        film.add(0, 4, &[[1; 3], [2; 3]]).unwrap();
         let before = film.clone();
         assert!(matches!(
             film.add(1, 4, &[[0; 3]; 2]),
@@ -226,14 +274,6 @@ mod tests {
             film.add(u32::MAX, 4, &[[0; 3]]),
             Err(FilmError::Outside { .. })
         ));
-        assert_eq!(
-            film.add(0, 4, &[[1; 3], [1; 3]]),
-            Err(FilmError::Full { pixel: 1 })
-        );
-        assert_eq!(
-            film.add(0, u32::MAX, &[[1; 3]]),
-            Err(FilmError::Full { pixel: 0 })
-        );
         assert_eq!(film, before);
     }
 }

@@ -7,6 +7,7 @@ use tracer::integrator::{Integrator, Path};
 use tracer::profile::Profile;
 use tracer::scene::All;
 use tracer::unit::{Plan, SPAN, Sums, render};
+use wire::PixelSums;
 
 use crate::image::film::Film;
 use crate::image::picture::Estimate;
@@ -31,10 +32,11 @@ pub fn film<P: Profile>(compiled: &CompiledScene, plan: &Plan) -> Film {
     let mut film = Film::new(plan.width, plan.height).with_exponent(compiled.exponent);
     for (id, sums) in (0..units).zip(&sums) {
         let extent = plan.extent(id);
-        let span: Vec<[u64; 3]> = sums[..usize::from(extent.pixels)]
+        let span = sums[..usize::from(extent.pixels)]
             .iter()
-            .map(|pixel| pixel.map(U48F16::to_bits))
-            .collect();
+            .map(|pixel| pixel.map(U48F16::to_bits));
+        let packet = PixelSums::new(&span.collect::<Vec<_>>()).expect("a unit fits a packet");
+        let span: Vec<[u64; 3]> = packet.iter().collect();
         film.add(extent.first_pixel, extent.samples.into(), &span)
             .expect("units lie within the film");
     }

@@ -47,6 +47,10 @@ pub struct Report {
     pub samples: u64,
     /// Pixels of the film without a sample.
     pub missing_pixels: usize,
+    /// Sums of units' pixels that were greater than a packet holds and are counted as the greatest that it does: the picture is too
+    /// dark there.
+    #[serde(default)]
+    pub saturated_sums: u64,
     /// Whether every unit came in; false for the picture that an aborted render leaves.
     pub complete: bool,
     /// From the first core's start to the last unit's arrival.
@@ -288,6 +292,7 @@ mod tests {
             image_sha256: "00".to_owned(),
             samples: 49152,
             missing_pixels: 0,
+            saturated_sums: 0,
             complete: true,
             wall_seconds: 1.5,
             peak_memory_bytes: None,

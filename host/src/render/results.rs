@@ -216,6 +216,7 @@ impl Results<'_> {
             image_sha256: self.collection.film.sha256(),
             samples: self.collection.film.samples(),
             missing_pixels: self.collection.film.missing(),
+            saturated_sums: self.collection.film.saturated(),
             complete: self.collection.end == End::Complete,
             wall_seconds: self.wall.as_secs_f64(),
             peak_memory_bytes: self.memory,
@@ -263,7 +264,7 @@ impl Results<'_> {
             // Writing to a string does not fail.
             let _ = writeln!(text, "{name:8} {said}");
         };
-        if let Some(warning) = tiles_off(report) {
+        for warning in tiles_off(report).into_iter().chain(saturated(report)) {
             line("WARNING", warning);
         }
         line("mean", means(report));
@@ -393,6 +394,17 @@ fn tiles_off(report: &Report) -> Option<String> {
         "the picture is off by more than noise explains: {} of {} tile tests fail; difference.png shows where",
         tiles.failed, tiles.tested
     ))
+}
+
+/// What else is to be said before: light was lost.
+fn saturated(report: &Report) -> Option<String> {
+    (report.saturated_sums > 0).then(|| {
+        format!(
+            "{} sums of pixels were greater than a packet holds, and the picture is too dark there: the scene's light is more than \
+             its compiler made room for",
+            report.saturated_sums
+        )
+    })
 }
 
 fn means(report: &Report) -> String {
