@@ -1,5 +1,7 @@
 //! What the whole-system tests share: the standard scene, its picture without a fleet in between, and the programs.
 
+mod image_difference;
+
 use std::ffi::OsStr;
 use std::os::unix::ffi::OsStrExt;
 use std::path::{Path, PathBuf};
@@ -12,6 +14,7 @@ use host::firmware::board::Board;
 use host::image::film::Film;
 use host::image::picture::Estimate;
 use host::oracle::direct;
+use host::oracle::lockstep::{Paired, paired};
 use host::oracle::reference::{self, Job};
 use host::platform::setup::{self, Install, Toolchain, Wanted};
 use host::platform::workspace;
@@ -19,6 +22,8 @@ use host::scene::{Scene, compile};
 use tempfile::TempDir;
 use tracer::profile::Profile;
 use tracer::unit::{Plan, Termination};
+
+pub use image_difference::{equivalent, explained_by_noise};
 
 /// Writes a program of a test: a script for `sh`. Another process writes it, because a program that any thread has open for writing while
 /// another starts a process cannot be run until that has run its own.
@@ -69,6 +74,11 @@ pub fn plan<P: Profile>(width: u16, height: u16, spp: u32) -> Plan {
 pub fn film<P: Profile>(scene: &Scene, plan: &Plan) -> Film {
     let compiled = compile(scene, plan.width, plan.height);
     direct::film::<P>(&compiled, plan)
+}
+
+/// `P`'s picture and its double's, sample by sample.
+pub fn pair<P: Profile<Random: Clone>>(scene: &Scene, plan: &Plan) -> Paired {
+    paired::<P>(&compile(scene, plan.width, plan.height), plan)
 }
 
 /// `P`'s picture, with the variance that the lockstep oracle measures on the same paths.
