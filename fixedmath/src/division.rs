@@ -153,6 +153,31 @@ pub const fn checked_nearest(a: I16F16, b: I16F16) -> Option<I16F16> {
     if fits(a, b) { Some(nearest(a, b)) } else { None }
 }
 
+/// `dividend / divisor` of a long number, rounded down.
+///
+/// `u32::MAX` where the quotient does not fit, and for a divisor of 0.
+///
+/// ```
+/// use fixedmath::division;
+/// assert_eq!(division::long(1 << 40, 3 << 10), 357_913_941);
+/// assert_eq!(division::long(1 << 32, 1), u32::MAX);
+/// ```
+pub const fn long(dividend: u64, divisor: u32) -> u32 {
+    if dividend >> 32 >= divisor as u64 {
+        return u32::MAX;
+    }
+    let shift = divisor.leading_zeros();
+    let (dividend, divisor) = (dividend << shift, divisor << shift);
+    // Too small by less than 7: 2 for the dividend's lower word, 4 for the reciprocal, 1 for what is cut off.
+    let mut quotient = ((dividend >> 32) * reciprocal_of_normal(divisor) as u64) >> 31;
+    let mut remainder = dividend - quotient * divisor as u64;
+    while remainder >= divisor as u64 {
+        remainder -= divisor as u64;
+        quotient += 1;
+    }
+    quotient as u32
+}
+
 /// Whether there is a quotient within the format.
 const fn fits(a: I16F16, b: I16F16) -> bool {
     let (dividend, divisor) = (a.to_bits().unsigned_abs(), b.to_bits().unsigned_abs());

@@ -240,3 +240,26 @@ fn reciprocals_are_correctly_rounded_and_saturate() {
         assert_eq!(checked, exact.and_then(fitting), "1 / {x}");
     }
 }
+
+#[test]
+fn long_quotients_are_rounded_down_and_saturate() {
+    let mut random = Lcg64::new(7);
+    let mut draw = || u64::from(random.next_fraction());
+    for _ in 0..2_000_000 {
+        let divisor = (draw() as u32) >> (draw() >> 27);
+        let dividend = (draw() << 32 | draw()) >> (draw() >> 26);
+        // Next to a multiple, where a quotient that is one off shows.
+        let multiple = (u64::from(divisor) * draw())
+            .wrapping_add(draw() % 3)
+            .wrapping_sub(1);
+        for dividend in [dividend, multiple] {
+            let exact = dividend.checked_div(divisor.into()).unwrap_or(u64::MAX);
+            let found = division::long(dividend, divisor);
+            assert_eq!(
+                u64::from(found),
+                exact.min(u32::MAX.into()),
+                "{dividend} / {divisor}"
+            );
+        }
+    }
+}

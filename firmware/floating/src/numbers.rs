@@ -8,7 +8,7 @@ use tracer::aggregate::{RoomNumbers, Wall};
 use tracer::arithmetic::{Directions, Formats, Sampling};
 use tracer::camera::FilmNumbers;
 use tracer::geometry::Grid;
-use tracer::geometry::sphere::{CoarseSphere, Reciprocal, SphereNumbers};
+use tracer::geometry::sphere::{Bend, CoarseSphere, Reciprocal, SphereNumbers, VastNumbers};
 use tracer::material::{DielectricNumbers, RadianceNumbers};
 
 use crate::Float;
@@ -188,6 +188,62 @@ impl<F: Float> SphereNumbers for Floating<F> {
     fn normal(p: [F; 3], radius: I16F16, _reciprocal: Reciprocal) -> [F; 3] {
         let reciprocal = F::ONE / Self::length(radius);
         p.map(|component| component * reciprocal)
+    }
+}
+
+fn curvature<F: Float>(bend: Bend) -> F {
+    F::of_i32(bend.curvature) * F::of(1.0 / (1u64 << 44) as f64)
+}
+
+impl<F: Float> VastNumbers for Floating<F> {
+    type Height = F;
+
+    const LEVEL: F = F::ZERO;
+
+    fn height(normal: [I2F30; 3], bend: Bend, above: [F; 3]) -> F {
+        dot(normal.map(Self::unit), above) - curvature::<F>(bend) * F::of(0.5) * dot(above, above)
+    }
+
+    fn is_below(height: F) -> bool {
+        height < F::ZERO
+    }
+
+    fn slope(normal: [I2F30; 3], bend: Bend, above: [F; 3], direction: [F; 3]) -> F {
+        dot(normal.map(Self::unit), direction) - curvature::<F>(bend) * dot(above, direction)
+    }
+
+    fn root_of_slope(bend: Bend, height: F, slope: F) -> Option<F> {
+        let square = slope * slope + F::of(2.0) * curvature::<F>(bend) * height;
+        (square >= F::ZERO).then(|| square.root())
+    }
+
+    fn is_level(root: F) -> bool {
+        root <= F::ZERO
+    }
+
+    fn goes_under(bend: Bend, height: F, slope: F, root: F, _t_max: F) -> Option<F> {
+        if slope > F::ZERO {
+            let radius = F::of_i32(bend.radius) * F::of_u32(1 << bend.shift) * F::of(1.0 / 65536.0);
+            return bend.is_towards().then(|| (root + slope) * radius);
+        }
+        if height <= F::ZERO {
+            return Some(F::ZERO);
+        }
+        let steepness = root - slope;
+        (steepness > F::ZERO).then(|| (height + height) / steepness)
+    }
+
+    fn comes_up(bend: Bend, height: F, slope: F, root: F, t_max: F) -> Option<F> {
+        Self::goes_under(bend.turned(), -height, -slope, root, t_max)
+    }
+
+    fn upward(normal: [I2F30; 3], bend: Bend, above: [F; 3]) -> [F; 3] {
+        let curvature = curvature::<F>(bend);
+        Self::renormalised([0, 1, 2].map(|i| Self::unit(normal[i]) - above[i] * curvature))
+    }
+
+    fn lowered(point: [F; 3], height: F, upward: [F; 3]) -> [F; 3] {
+        [0, 1, 2].map(|i| point[i] - height * upward[i])
     }
 }
 

@@ -44,6 +44,8 @@ capabilities! {
     Mirror = "mirror",
     /// A dielectric.
     Glass = "glass",
+    /// A sphere whose radius 16:16 has no room for.
+    Vast = "vast",
     /// Russian roulette; otherwise paths end at a fixed depth.
     Roulette = "roulette",
 }

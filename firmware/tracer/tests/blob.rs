@@ -8,7 +8,7 @@ use proptest::prelude::*;
 use support::{Blob, GRID, blob, blob_for, camera, sphere};
 use tracer::aggregate::Room;
 use tracer::camera::CameraRecord;
-use tracer::geometry::sphere::{SolidSphere, SphereRecord};
+use tracer::geometry::sphere::{SolidSphere, SphereRecord, VastSphere};
 use tracer::geometry::{Grid, PrimitiveId, PrimitiveSet};
 use tracer::material::{Kind, MaterialId, MaterialRecord};
 use tracer::scene::{BlobError, Capabilities, Capability, Header, MAX_BYTES, MAX_PRIMITIVES, Scene};
@@ -32,13 +32,16 @@ fn a_sphere_is_these_bytes() {
         &[],
         &[sphere([1.0, -1.0, 0.5], 2.0, 0.5, Kind::Diffuse)],
     );
-    let words: [u32; 30] = [
-        u32::from_le_bytes(*b"FXS3"),
+    let words: [u32; 32] = [
+        u32::from_le_bytes(*b"FXS4"),
         // The third and the seventh capability.
         0b100_0100,
         // One material, and the grid's shift; no hollow sphere, and one solid.
         1 | GRID << 16,
         1 << 16,
+        // No vast one, and zero.
+        0,
+        0,
         // A centre of (0, -1, 0) on the grid; a square of less than 2, 4.9 of the longest distance, and 7.
         0xffff_0000,
         0,
@@ -247,17 +250,19 @@ fn a_material_says_what_it_is() {
 proptest! {
     #[test]
     fn no_bytes_make_a_view_panic(
-        mut words in prop::collection::vec(any::<u64>(), 2..90),
+        mut words in prop::collection::vec(any::<u64>(), 3..90),
         materials in 0u16..6,
         hollow in 0u16..6,
         solid in 0u16..6,
+        vast in 0u16..6,
     ) {
-        let header = Header::new(Capabilities::ALL, materials, Grid::new(GRID), [hollow, solid]);
+        let header = Header::new(Capabilities::ALL, materials, Grid::new(GRID), [hollow, solid, vast]);
         bytemuck::cast_slice_mut(&mut words)[..HEADER].copy_from_slice(bytemuck::bytes_of(&header));
         let whole = HEADER
             + size_of::<Room>()
             + usize::from(hollow) * size_of::<SphereRecord>()
             + usize::from(solid) * SPHERE
+            + usize::from(vast) * size_of::<VastSphere>()
             + usize::from(materials) * MATERIAL;
         let _ = counts(&Blob(words.clone()), Capabilities::ALL);
         words.resize(whole / 8, 0x0001_0000_0000_0000);

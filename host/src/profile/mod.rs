@@ -20,6 +20,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
 use cycles::{Assumptions, Estimate};
+use fixedmath::I16F16;
 
 use crate::firmware::arithmetic::Arithmetic;
 use crate::firmware::board::Board;
@@ -27,7 +28,9 @@ use crate::firmware::{ElfError, SoftFloat};
 use crate::platform::interrupt::LastAct;
 use crate::platform::setup::{self, Install, SetupError, Wanted};
 use crate::platform::workspace::{self, NoWorkspace};
-use crate::render::options::{End, Epsilon, PictureOptions, Pixels, Reference, Size, samples_per_pixel};
+use crate::render::options::{
+    End, Epsilon, EpsilonError, PictureOptions, Pixels, Reference, Size, samples_per_pixel,
+};
 use crate::render::{RecordError, Recorded, record};
 use crate::scene::{Scene, SceneError};
 use code::Code;
@@ -92,6 +95,9 @@ pub enum ProfileError {
     /// The scene is unusable.
     #[error(transparent)]
     Scene(#[from] SceneError),
+    /// It is of another size than the epsilon.
+    #[error(transparent)]
+    Epsilon(#[from] EpsilonError),
     /// There is no folder for the picture.
     #[error("cannot make a folder for temporary files (set TMPDIR to one with room)")]
     Folder(#[source] io::Error),
@@ -113,11 +119,14 @@ impl ProfileOptions {
     /// What these options render. The scene's name is in its file.
     pub fn subject(&self) -> Result<Subject, ProfileError> {
         let scene = Scene::load(&workspace::scene(self.scene.as_deref())?)?;
-        Ok(self.subject_of(scene.name))
+        let epsilon = match self.epsilon {
+            Some(epsilon) => epsilon.for_core(scene.scale())?,
+            None => self.profile.epsilon(),
+        };
+        Ok(self.subject_of(scene.name, epsilon))
     }
 
-    fn subject_of(&self, scene: String) -> Subject {
-        let epsilon = self.epsilon.map_or(self.profile.epsilon(), |epsilon| epsilon.0);
+    fn subject_of(&self, scene: String, epsilon: I16F16) -> Subject {
         Subject {
             board: self.board.name().to_owned(),
             profile: SoftFloat::profile(self.profile, self.soft_float),
@@ -183,6 +192,7 @@ fn account(options: &ProfileOptions, recorded: &Recorded, blocks: usize) -> Resu
     let Recorded {
         elf,
         scene,
+        epsilon,
         samples,
         rays,
         flow,
@@ -209,7 +219,7 @@ fn account(options: &ProfileOptions, recorded: &Recorded, blocks: usize) -> Resu
     let a = |count: u64, of: u64| count as f64 / of as f64;
     let run = Run {
         format: FORMAT,
-        subject: options.subject_of(scene.clone()),
+        subject: options.subject_of(scene.clone(), *epsilon),
         samples: *samples,
         rays: *rays,
         total,

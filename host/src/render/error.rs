@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use super::cycles::CyclesError;
+use super::options::EpsilonError;
 use crate::collector::{BindError, CollectError};
 use crate::firmware::FirmwareError;
 use crate::fleet::FleetError;
@@ -45,6 +46,9 @@ pub enum RenderError {
         /// Where they are.
         folder: PathBuf,
     },
+    /// The scene is of another size than the epsilon.
+    #[error(transparent)]
+    Epsilon(#[from] EpsilonError),
     /// The picture has more units than there are ids.
     #[error("the picture has more than 2^32 work units: choose a smaller --size or --spp")]
     TooManyUnits,

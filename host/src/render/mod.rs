@@ -100,7 +100,8 @@ impl Job {
         let scene = Scene::load(&workspace::scene(options.scene.as_deref())?)?;
         let (width, height) = (options.size.width, options.size.height);
         scene.check_frame(width, height)?;
-        let plan = options.plan(samples_per_unit(&scene, options.spp, options.termination.0));
+        let units = samples_per_unit(&scene, options.spp, options.termination.0);
+        let plan = options.plan(units, scene.scale())?;
         plan.units().ok_or(RenderError::TooManyUnits)?;
         let out = Folder::open(options.out(&scene.name)?)?;
         let reference = match &options.reference {

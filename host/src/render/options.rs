@@ -15,6 +15,7 @@ use crate::firmware::arithmetic::Arithmetic;
 use crate::firmware::board::Board;
 use crate::firmware::{Level, SoftFloat};
 use crate::platform::workspace::{self, NoWorkspace};
+use crate::scene::MAX_LENGTH;
 
 /// A film of this many pixels takes half a gigabyte.
 const MOST_PIXELS: u32 = 1 << 24;
@@ -36,7 +37,7 @@ pub struct PictureOptions {
     /// Arithmetic
     #[arg(long, value_enum, default_value_t)]
     pub profile: Arithmetic,
-    /// How far from a surface a new ray starts at least [default: the profile's own]
+    /// How far along a ray its first hit is at least, in the scene's unit of length [default: the profile's own]
     #[arg(long, value_name = "X", allow_negative_numbers = true)]
     pub epsilon: Option<Epsilon>,
     /// When a path ends: `roulette`, or `depth:N` after N surfaces
@@ -105,17 +106,21 @@ pub struct RenderOptions {
 }
 
 impl PictureOptions {
-    /// The plan that all cores share, with units of so many samples per pixel.
-    pub fn plan(&self, samples_per_unit: u16) -> Plan {
-        Plan {
+    /// The plan that all cores share, with units of so many samples per pixel, in a scene whose lengths are times 2^`scale` for a
+    /// core.
+    pub fn plan(&self, samples_per_unit: u16, scale: i32) -> Result<Plan, EpsilonError> {
+        Ok(Plan {
             width: self.size.width,
             height: self.size.height,
             spp: self.spp,
             samples_per_unit,
             seed: self.seed,
             termination: self.termination.0,
-            epsilon: self.epsilon.map_or(self.profile.epsilon(), |epsilon| epsilon.0),
-        }
+            epsilon: match self.epsilon {
+                Some(epsilon) => epsilon.for_core(scale)?,
+                None => self.profile.epsilon(),
+            },
+        })
     }
 
     /// The folder for the results of the scene of this name.
@@ -194,20 +199,62 @@ impl FromStr for Size {
     }
 }
 
-/// Self-intersection epsilon.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Epsilon(pub I16F16);
+/// Self-intersection epsilon, in the scene's unit of length.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Epsilon(f64);
+
+/// An epsilon that a core cannot have.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum EpsilonError {
+    /// It would skip what is to be seen.
+    #[error("an --epsilon of {epsilon} is too long for this scene: use at most {most}")]
+    Long {
+        /// In the scene's unit.
+        epsilon: f64,
+        /// The longest, likewise.
+        most: f64,
+    },
+    /// It is none.
+    #[error(
+        "an --epsilon of {epsilon} is shorter than what a core tells apart in this scene: use 0, or at least {least}"
+    )]
+    Short {
+        /// In the scene's unit.
+        epsilon: f64,
+        /// The shortest, likewise.
+        least: f64,
+    },
+}
+
+impl Epsilon {
+    /// As a core has it, in a scene whose lengths are times 2^`scale` for a core.
+    pub fn for_core(self, scale: i32) -> Result<I16F16, EpsilonError> {
+        // Camera rays of the standard scene start 140 before it; an epsilon of that size would skip all of it.
+        const MOST: f64 = 100.0;
+        let (epsilon, unit) = (self.0, 2f64.powi(scale));
+        if epsilon * unit > MOST {
+            let most = MOST / unit;
+            return Err(EpsilonError::Long { epsilon, most });
+        }
+        let bits = (epsilon * unit * 65536.0).round() as i32;
+        if bits == 0 && epsilon > 0.0 {
+            let least = 1.0 / 65536.0 / unit;
+            return Err(EpsilonError::Short { epsilon, least });
+        }
+        Ok(I16F16::from_bits(bits))
+    }
+}
 
 impl FromStr for Epsilon {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
         let value: f64 = text.parse().map_err(|_| "a number, as in 0.1".to_owned())?;
-        // Camera rays start 140 before the scene; an epsilon of that size would skip all of it.
-        if !(0.0..=100.0).contains(&value) {
-            return Err("a distance from 0 to 100, in the scene's units".to_owned());
+        if (0.0..=MAX_LENGTH).contains(&value) {
+            Ok(Self(value))
+        } else {
+            Err("a distance from 0 on, in the scene's unit of length".to_owned())
         }
-        Ok(Self(I16F16::from_bits((value * 65536.0).round() as i32)))
     }
 }
 
@@ -300,7 +347,7 @@ mod tests {
         );
         let out = picture.out("cornell").expect("tests run in the checkout");
         assert!(out.ends_with("out/cornell-precise"), "{}", out.display());
-        let plan = picture.plan(64);
+        let plan = picture.plan(64, 0).expect("no epsilon");
         assert_eq!(
             (plan.width, plan.height, plan.spp, plan.samples_per_unit),
             (256, 192, 64, 64)
@@ -347,7 +394,7 @@ mod tests {
             "--no-install",
         ])
         .expect("these are all good");
-        let plan = options.picture.plan(32);
+        let plan = options.picture.plan(32, 0).expect("as published");
         assert_eq!(options.boards, Board::ALL);
         assert_eq!(
             (plan.spp, plan.samples_per_unit, plan.epsilon),
@@ -355,6 +402,17 @@ mod tests {
         );
         assert_eq!((plan.termination, plan.seed), (Termination::Depth(7), u64::MAX));
         assert_eq!(options.picture.reference, Some(Reference::None));
+    }
+
+    #[test]
+    fn an_epsilon_is_a_length_of_the_scene() {
+        let epsilon = |text: &str| text.parse::<Epsilon>().expect("a length");
+        assert_eq!(epsilon("0.1").for_core(0), Ok(Arithmetic::Paper.epsilon()));
+        assert_eq!(epsilon("0.1").for_core(-3), Ok(I16F16::from_bits(819)));
+        assert_eq!(epsilon("1e-9").for_core(40), Ok(I16F16::from_bits(72_057_594)));
+        let refused = |text: &str, scale| epsilon(text).for_core(scale).unwrap_err().to_string();
+        assert!(refused("32768", 0).contains("too long for this scene: use at most 100"));
+        assert!(refused("1e-6", 0).contains("use 0, or at least 0.0000152587890625"));
     }
 
     #[test]
@@ -371,9 +429,9 @@ mod tests {
             (["--cores", "0"], "1..=1024"),
             (["--profile", "fancy"], "paper, precise"),
             (["--board", "versatilepb,z80"], "versatilepb, mps2-an385"),
-            (["--epsilon", "-0.1"], "from 0 to 100"),
-            (["--epsilon", "32768"], "from 0 to 100"),
-            (["--epsilon", "NaN"], "from 0 to 100"),
+            (["--epsilon", "-0.1"], "from 0 on"),
+            (["--epsilon", "inf"], "from 0 on"),
+            (["--epsilon", "NaN"], "from 0 on"),
             (["--epsilon", "small"], "as in 0.1"),
             (["--termination", "depth:0"], "from 1 to 255"),
             (["--termination", "never"], "roulette"),

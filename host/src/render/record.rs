@@ -9,6 +9,7 @@ use std::time::Duration;
 
 use cycles::file::{self, FileError};
 use cycles::flow::{Flow, Recording};
+use fixedmath::I16F16;
 
 use super::options::{PictureOptions, Reference};
 use super::{Job, Kind, RenderError};
@@ -72,6 +73,8 @@ pub struct Recorded {
     pub elf: PathBuf,
     /// The scene's name.
     pub scene: String,
+    /// A core's self-intersection epsilon.
+    pub epsilon: I16F16,
     /// Samples of the picture.
     pub samples: u64,
     /// Rays traced for them.
@@ -138,6 +141,7 @@ pub fn record(
     Ok(Recorded {
         elf,
         scene: job.scene.name,
+        epsilon: job.plan.epsilon,
         samples: session.samples(),
         rays: collection.rays(),
         flow,

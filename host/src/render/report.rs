@@ -39,7 +39,7 @@ pub struct Report {
     pub pixels: String,
     /// Seed of the render.
     pub seed: u64,
-    /// Self-intersection epsilon, in scene units.
+    /// Self-intersection epsilon, in the scene's unit of length.
     pub epsilon: f64,
     /// SHA-256 of the film's integer sums and counts.
     pub image_sha256: String,

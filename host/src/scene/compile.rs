@@ -5,16 +5,18 @@
 
 use fixedmath::{I1F31, I4F28, I16F16, I32F32, U16F16, U19F45};
 use tracer::camera::CameraRecord;
-use tracer::geometry::sphere::SphereRecord;
-use tracer::geometry::{PrimitiveId, PrimitiveSet};
+use tracer::geometry::sphere::{HollowSphere, SolidSphere, SphereRecord, VastSphere};
+use tracer::geometry::{PrimitiveId, PrimitiveSet, Shape};
 use tracer::material::{Bsdf, Dielectric, Kind, MaterialId, MaterialRecord};
 use tracer::scene::{Capabilities, Capability, Header};
 
 use super::fixed::{q0_32, q16, q30};
 use super::light::Light;
 use super::proof::Proved;
+use super::scale::{LONGEST, Scale};
 use super::start::StartPatch;
 use super::validate::is_cut_open;
+use super::vast;
 use super::vector::{cross, normalised};
 use super::{Camera, Material, Scene, Sphere};
 
@@ -29,6 +31,8 @@ pub struct CompiledScene {
     pub camera: CameraRecord,
     /// What the image must be built with for scene and camera.
     pub needs: Capabilities,
+    /// Cores' lengths are the scene's times 2^scale.
+    pub scale: i32,
     /// Cores' radiance is the scene's times 2^exponent; 0 for all scenes but those whose light would not fit as it is.
     pub exponent: i32,
 }
@@ -82,32 +86,48 @@ const _: () = assert!(
 const FILTER: f64 = 0.25;
 
 /// Compiles a checked scene, and its camera for a picture of `width` by `height` pixels.
+///
+/// # Panics
+/// If the scene is too wide for a core, which a checked one is not.
 pub fn compile(scene: &Scene, width: u16, height: u16) -> CompiledScene {
-    // Hollow spheres go first: most rays end on one, and a near hit early spares roots later.
-    let (hollow, solid): (Vec<&Sphere>, Vec<&Sphere>) =
-        scene.spheres.iter().partition(|sphere| sphere.hollow);
-    let counts = [hollow.len() as u16, solid.len() as u16];
-    let spheres = [&hollow[..], &solid[..]].concat();
+    let all: Vec<&Sphere> = scene.spheres.iter().collect();
+    let scale = Scale::of(&all, &scene.camera).expect("a checked scene fits a core");
     let exponent = Light::of(scene.spheres.iter()).exponent();
+    let scene = near_origin(scale.applied(scene), scale);
+    let all: Vec<&Sphere> = scene.spheres.iter().collect();
+    let extent = scale.extent(&all, &scene.camera);
+    // Hollow spheres go first: most rays end on one, and a near hit early spares roots later.
+    let (vast, ordinary): (Vec<&Sphere>, Vec<&Sphere>) =
+        all.iter().partition(|sphere| scale.is_vast(sphere.radius));
+    let (hollow, solid): (Vec<&Sphere>, Vec<&Sphere>) =
+        ordinary.into_iter().partition(|sphere| sphere.hollow);
+    let counts = [hollow.len(), solid.len(), vast.len()].map(|count| count as u16);
+    let spheres = [&hollow[..], &solid[..], &vast[..]].concat();
     let mut materials = Vec::new();
-    let mut record_of =
-        |sphere: &&Sphere| record(sphere, material_id(&mut materials, material(sphere, exponent)));
+    let mut id_of = |sphere: &Sphere| material_id(&mut materials, material(sphere, exponent));
+    let mut record_of = |sphere: &&Sphere| record(sphere, id_of(sphere));
     let hollow_records: Vec<SphereRecord> = hollow.iter().map(&mut record_of).collect();
     let solid_records: Vec<SphereRecord> = solid.iter().map(&mut record_of).collect();
-    let proved = Proved::of(&spheres, hollow_records, solid_records);
-    let needs = needs(&spheres).union(proved.needs());
+    let middle = (!vast.is_empty()).then(|| extent.middle.map(q16));
+    let proved = Proved::of(&extent, middle, hollow_records, solid_records);
+    let vast_records: Vec<VastSphere> = vast
+        .iter()
+        .map(|sphere| vast::record(sphere, extent.middle, proved.origin, id_of(sphere)))
+        .collect();
+    let needs = needs(&hollow, &solid, &vast).union(proved.needs());
     let header = Header::new(needs, materials.len() as u16, proved.grid, counts);
     let blob = [
         bytemuck::bytes_of(&header),
         bytemuck::cast_slice(proved.room.as_slice()),
         bytemuck::cast_slice(&proved.hollow_spheres),
         bytemuck::cast_slice(&proved.solid_spheres),
+        bytemuck::cast_slice(&vast_records),
         bytemuck::cast_slice(&materials),
     ]
     .concat();
     let blob = Blob::new(&blob);
     let camera = CameraRecord {
-        opened: opened(scene, &spheres, width, height),
+        opened: opened(&scene, &spheres, width, height),
         ..camera(&scene.camera, proved.origin, width, height)
     };
     CompiledScene {
@@ -115,8 +135,23 @@ pub fn compile(scene: &Scene, width: u16, height: u16) -> CompiledScene {
         needs: needs.union(camera.needs()),
         blob,
         camera,
+        scale: scale.exponent,
         exponent,
     }
+}
+
+/// The scene itself where 16:16 holds its coordinates; else the same around the origin, moved by a whole number of units.
+fn near_origin(scene: Scene, scale: Scale) -> Scene {
+    let fits = |point: [f64; 3]| point.iter().all(|c| c.abs() < LONGEST);
+    let ordinary = |sphere: &&Sphere| !scale.is_vast(sphere.radius);
+    let mut points = scene.spheres.iter().filter(ordinary).map(|sphere| sphere.centre);
+    let spheres: Vec<&Sphere> = scene.spheres.iter().collect();
+    let middle = scale.extent(&spheres, &scene.camera).middle;
+    if fits(middle) && fits(scene.camera.position) && points.all(fits) {
+        return scene;
+    }
+    let away = middle.map(f64::round);
+    scene.moved(away.map(|c| -c))
 }
 
 fn camera(camera: &Camera, origin: [I16F16; 3], width: u16, height: u16) -> CameraRecord {
@@ -216,21 +251,29 @@ fn dielectric(index: f64) -> Dielectric {
 }
 
 /// What the scene needs of the tracer, wherever it is seen from.
-fn needs(spheres: &[&Sphere]) -> Capabilities {
-    spheres.iter().fold(Capabilities::NONE, |needs, sphere| {
-        let shape = if sphere.hollow {
-            Capability::Hollow
-        } else {
-            Capability::Solid
-        };
-        needs.with(shape).union(match sphere.material {
-            // What only absorbs takes no code.
-            Material::Diffuse([0.0, 0.0, 0.0]) => Capabilities::NONE,
-            Material::Diffuse(_) => Capabilities::of(&[tracer::material::Diffuse::CAPABILITY]),
-            Material::Mirror(_) => Capabilities::of(&[tracer::material::Mirror::CAPABILITY]),
-            Material::Glass { .. } => Capabilities::of(&[Dielectric::CAPABILITY, Capability::Inside]),
+fn needs(hollow: &[&Sphere], solid: &[&Sphere], vast: &[&Sphere]) -> Capabilities {
+    let shapes = [
+        (hollow, HollowSphere::CAPABILITY),
+        (solid, SolidSphere::CAPABILITY),
+        (vast, VastSphere::CAPABILITY),
+    ];
+    shapes
+        .into_iter()
+        .fold(Capabilities::NONE, |needs, (spheres, shape)| {
+            spheres.iter().fold(needs, |needs, sphere| {
+                needs.with(shape).union(of_material(sphere))
+            })
         })
-    })
+}
+
+fn of_material(sphere: &Sphere) -> Capabilities {
+    match sphere.material {
+        // What only absorbs takes no code.
+        Material::Diffuse([0.0, 0.0, 0.0]) => Capabilities::NONE,
+        Material::Diffuse(_) => Capabilities::of(&[tracer::material::Diffuse::CAPABILITY]),
+        Material::Mirror(_) => Capabilities::of(&[tracer::material::Mirror::CAPABILITY]),
+        Material::Glass { .. } => Capabilities::of(&[Dielectric::CAPABILITY, Capability::Inside]),
+    }
 }
 
 /// The solids that rays start within.

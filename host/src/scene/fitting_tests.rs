@@ -1,32 +1,7 @@
-//! How the parts of a scene fit together: reach, light, the start of rays, the shape of the picture, and what is compiled of them.
+//! How the parts of a scene fit together: light, the start of rays, the shape of the picture, and what is compiled of them.
 
 use super::tests::{CORNELL, GOOD, messages};
 use super::*;
-
-#[test]
-fn extents_beyond_the_reach() {
-    let reach = "beyond the tracer's reach (10922)";
-    // A room too large by itself.
-    let found = messages(&GOOD.replace("radius = 20\n", "radius = 10923\n"));
-    assert!(
-        found[0].starts_with("test.toml:6:") && found[0].contains("\"room\""),
-        "{found:?}"
-    );
-    assert!(found[0].contains(reach), "{found:?}");
-    // Without a room every sphere can be seen from every other.
-    let open = GOOD
-        .replace("hollow = true\n", "")
-        .replace("radius = 20\n", "radius = 2\n");
-    let apart = |x: &str| open.replace("centre = [0, 0, -5]", &format!("centre = [{x}, 0, -5]"));
-    assert!(Scene::parse("test.toml", &apart("21800")).is_ok());
-    let found = messages(&apart("21850"));
-    assert!(
-        found
-            .iter()
-            .any(|message| message.contains("beyond the tracer's reach (21844)")),
-        "{found:?}"
-    );
-}
 
 #[test]
 fn cameras_inside_solids() {

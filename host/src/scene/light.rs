@@ -177,7 +177,7 @@ fn largest_sum(brightest: f64, on_the_way: f64, survival: f64) -> f64 {
 }
 
 /// The next number that two digits can say.
-fn rounded_up(value: f64) -> f64 {
+pub(super) fn rounded_up(value: f64) -> f64 {
     let digit = 10f64.powi(value.log10().floor() as i32 - 1);
     (value / digit).ceil() * digit
 }

@@ -33,14 +33,14 @@ impl Limits {
 
 pub(super) const COORDINATE: Limits = Limits {
     range: -MAX_LENGTH..=MAX_LENGTH,
-    below: "that is the 16:16 range: make the scene smaller or move it to the origin",
-    above: "that is the 16:16 range: make the scene smaller or move it to the origin",
+    below: "no scene is that large: use a longer unit of length",
+    above: "no scene is that large: use a longer unit of length",
     example: "three numbers",
 };
 pub(super) const RADIUS: Limits = Limits {
     range: MIN_RADIUS..=MAX_LENGTH,
-    below: "a radius is positive, and 1/r and r² need that much in 16:16: make the scene larger",
-    above: "that is the 16:16 range: make the scene smaller",
+    below: "a radius is positive, and no ball is that small: use a shorter unit of length",
+    above: "no scene is that large: use a longer unit of length",
     example: "e.g. `radius = 16.5`",
 };
 pub(super) const EMISSION: Limits = Limits {
@@ -76,7 +76,7 @@ pub(super) const PLANE_WIDTH: Limits = Limits {
 pub(super) const NEAR: Limits = Limits {
     range: 0.0..=MAX_LENGTH,
     below: "rays cannot start behind the camera: use 0",
-    above: "that is the 16:16 range: move the camera instead",
+    above: "no scene is that large: move the camera instead",
     example: "e.g. `near = 140`",
 };
 /// An index of exactly 1 bends nothing and would only cost time.

@@ -1,8 +1,8 @@
 //! A scene as its author wrote it: spheres, materials and a camera, in double precision.
 //!
 //! The text format is described in `docs/scene-format.md`. [`Scene::load`] accepts nothing that the fixed-point tracer
-//! could not hold: whatever it returns has values within the 16:16 range, a light, and a camera in free space. Turning
-//! it into the bytes a core reads is the scene compiler's business.
+//! could not hold: whatever it returns has lengths that fit a core together, a light, and a camera in free space. Turning
+//! it into the bytes a core reads is the scene compiler's business, which also chooses a core's unit of length.
 
 mod compile;
 mod fixed;
@@ -10,15 +10,21 @@ mod light;
 mod limits;
 mod parse;
 mod proof;
+mod reach;
 mod room;
+mod scale;
 mod start;
 mod unit_size;
 mod validate;
+mod vast;
 mod vector;
 
 use std::path::{Path, PathBuf};
 
+use scale::Scale;
+
 pub(crate) use compile::record as sphere_record;
+pub(crate) use reach::REACH;
 pub use compile::{Blob, CompiledScene, compile};
 pub use unit_size::samples_per_unit;
 
@@ -96,14 +102,12 @@ pub enum Material {
 pub const FORMAT: i64 = 1;
 /// More spheres than this do not fit a core's data memory beside its stack.
 pub const MAX_SPHERES: usize = tracer::scene::MAX_PRIMITIVES;
-/// The largest whole number a signed 16:16 holds; every coordinate and radius stays below it.
-pub const MAX_LENGTH: f64 = 32767.0;
-/// How far from the centre of a hollow sphere a ray may start; of any other, twice as far. It is a third of the 16:16
-/// range, so that no sum of distances and projections leaves it and no sum of squares leaves 32:32 (see
-/// `tracer::geometry::sphere::SphereNumbers`). Hollow and glass spheres, which are crossed from side to side, have smaller radii.
-pub const REACH: f64 = 10922.0;
-/// Smaller spheres leave too few of 16 fraction bits for 1/r and r².
-pub const MIN_RADIUS: f64 = 1.0 / 256.0;
+/// No coordinate or radius is longer, in whatever unit: what is is a slip.
+pub const MAX_LENGTH: f64 = 1e12;
+/// No radius is shorter, likewise.
+pub const MIN_RADIUS: f64 = 1e-12;
+/// Spheres that are smaller for a core leave too few of 16 fraction bits for 1/r and r².
+const MIN_CORE_RADIUS: f64 = 1.0 / 256.0;
 /// Brighter lights could overflow a work unit's 24:16 sums.
 pub const MAX_EMISSION: f64 = 4095.0;
 /// Roulette ends a path with probability one minus the reflectance, so the reflectance stays below one.
@@ -125,7 +129,7 @@ pub enum SceneError {
     /// The text has faults; each line of the message is one of them.
     #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))]
     Invalid(Vec<Fault>),
-    /// Rays of a picture of this shape would start inside a solid or outside the 16:16 range.
+    /// Rays of a picture of this shape would start inside a solid.
     #[error("{scene} cannot be seen at {width}x{height}: {cause}")]
     Frame {
         /// The scene's name.
@@ -183,28 +187,28 @@ impl Scene {
         }
     }
 
-    /// Checks that every ray of a picture of this size starts in free space and within range.
+    /// The scale at which cores see it: their lengths are the scene's times 2^scale.
+    ///
+    /// # Panics
+    /// If the scene is too wide for a core, which a checked one is not.
+    pub fn scale(&self) -> i32 {
+        let spheres: Vec<&Sphere> = self.spheres.iter().collect();
+        let scale = Scale::of(&spheres, &self.camera).expect("a checked scene fits a core");
+        scale.exponent
+    }
+
+    /// Checks that every ray of a picture of this size starts in free space.
     ///
     /// [`Scene::load`] has checked it for the default shape of 4:3; a wider picture looks further to the sides.
     pub fn check_frame(&self, width: u16, height: u16) -> Result<(), SceneError> {
-        let spheres = self.spheres.iter().map(|sphere| (sphere, ()));
-        let Some((rays, blocked)) = validate::first_blocked_ray(&self.camera, spheres, width, height) else {
+        let spheres: Vec<&Sphere> = self.spheres.iter().collect();
+        let Some(blocked) = validate::first_blocked_ray(&self.camera, &spheres, width, height) else {
             return Ok(());
         };
-        let cause = match blocked {
-            validate::Blocked::Inside(sphere, ()) => {
-                let name = &sphere.name;
-                format!(
-                    "{rays} starts inside the solid of sphere \"{name}\"; choose a shape nearer to 4:3, or give the camera a `plane_width`"
-                )
-            }
-            validate::Blocked::TooFar(sphere, ()) => {
-                let name = &sphere.name;
-                format!(
-                    "{rays} starts beyond the tracer's reach of sphere \"{name}\"; choose a narrower shape, or give the camera a `plane_width`"
-                )
-            }
-        };
+        let cause = format!(
+            "{} starts inside the solid of sphere \"{}\"; choose a shape nearer to 4:3, or give the camera a `plane_width`",
+            blocked.rays, spheres[blocked.sphere].name
+        );
         Err(SceneError::Frame {
             scene: self.name.clone(),
             width,
@@ -216,5 +220,7 @@ impl Scene {
 
 #[cfg(test)]
 mod fitting_tests;
+#[cfg(test)]
+mod scale_tests;
 #[cfg(test)]
 mod tests;

@@ -8,9 +8,9 @@ use tracer::geometry::sphere::{CoarseSphere, SolidSphere, SphereRecord};
 use tracer::scene::{Capabilities, Capability};
 
 use super::fixed::q16;
+use super::reach::{Extent, REACH};
 use super::room::RoomProof;
-use super::validate::farthest_start;
-use super::{MAX_LENGTH, REACH, Sphere};
+use super::scale::LONGEST;
 
 /// The spheres of a scene as they lie around its origin, and what has been proved of them.
 #[derive(Clone, Debug)]
@@ -26,9 +26,10 @@ pub(super) struct Proved {
 }
 
 impl Proved {
-    /// Of spheres whose records lie in the scene's coordinates.
+    /// Of ordinary spheres whose records lie in the scene's coordinates. The origin of a scene with vast ones is its `middle`.
     pub(super) fn of(
-        spheres: &[&Sphere],
+        extent: &Extent<'_>,
+        middle: Option<[I16F16; 3]>,
         mut hollow: Vec<SphereRecord>,
         mut solid: Vec<SphereRecord>,
     ) -> Self {
@@ -37,17 +38,18 @@ impl Proved {
                 |sphere: &SphereRecord| (0..3).all(|i| sphere.centre[i].checked_sub(origin[i]).is_some());
             hollow.iter().chain(&solid).all(all)
         };
-        let proof = RoomProof::of(&hollow).filter(|proof| fits(proof.origin));
+        let proof = RoomProof::of(&hollow).filter(|proof| middle.is_none() && fits(proof.origin));
         // Else the centre of the smallest room is next to where rays start.
         let smallest = hollow.iter().min_by_key(|sphere| sphere.radius);
         let origin = proof
             .map(|proof| proof.origin)
+            .or(middle)
             .or(smallest
                 .map(|sphere| sphere.centre)
                 .filter(|&centre| fits(centre)))
             .unwrap_or_default();
-        let reaches: Vec<I16F16> = solid.iter().map(|sphere| reach(spheres, sphere.centre)).collect();
-        let start = reach(spheres, origin);
+        let reaches: Vec<I16F16> = solid.iter().map(|sphere| reach(extent, sphere.centre)).collect();
+        let start = reach(extent, origin);
         for sphere in hollow.iter_mut().chain(&mut solid) {
             sphere.centre = [0, 1, 2].map(|i| sphere.centre[i] - origin[i]);
         }
@@ -55,7 +57,7 @@ impl Proved {
         let telling = solid
             .iter()
             .zip(&reaches)
-            .filter(|(sphere, reach)| is_telling(grid, sphere, **reach, !hollow.is_empty()));
+            .filter(|(sphere, reach)| is_telling(grid, sphere, **reach, extent.is_enclosed()));
         let coarse = 2 * telling.count() > solid.len();
         let with_coarse = |(sphere, reach): (SphereRecord, I16F16)| SolidSphere {
             coarse: CoarseSphere::new(grid, sphere.centre, sphere.square, reach),
@@ -99,15 +101,15 @@ fn is_telling(grid: Grid, sphere: &SphereRecord, reach: I16F16, in_room: bool) -
 }
 
 /// A bound on how far from a point rays start, wherever the camera is.
-fn reach(spheres: &[&Sphere], point: [I16F16; 3]) -> I16F16 {
+fn reach(extent: &Extent<'_>, point: [I16F16; 3]) -> I16F16 {
     /// In a room, what the tent filter may put outside of it.
     const MARGIN: f64 = 1.1;
-    let farthest = if spheres.iter().any(|sphere| sphere.hollow) {
-        MARGIN * farthest_start(spheres, point.map(I16F16::to_num)) + 1.0
+    let farthest = if extent.is_enclosed() {
+        MARGIN * extent.farthest_start(point.map(I16F16::to_num)) + 1.0
     } else {
         2.0 * REACH
     };
-    q16(farthest.min(MAX_LENGTH))
+    q16(farthest.min(LONGEST))
 }
 
 /// The grid for solids that rays start no further than `reaches` from, and no further than `start` from the origin.

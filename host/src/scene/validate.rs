@@ -1,17 +1,19 @@
-//! How the parts of a scene fit together: names, light, extent, and free space in front of the camera.
+//! How the parts of a scene fit together: names, light, lengths, and free space in front of the camera.
 
-use super::light::Light;
+use super::light::{Light, rounded_up};
 use super::parse::{Draft, Source};
+use super::reach::REACH;
+use super::scale::Scale;
 use super::start::StartPatch;
-use super::vector::{cross, length, sub};
-use super::{Camera, Material, REACH, Sphere};
+use super::vector::{cross, length};
+use super::{Camera, Material, Sphere};
 
 /// Notes every fault of `draft`.
 pub(super) fn validate(draft: &Draft, source: &mut Source<'_>) {
     names_are_unique(draft, source);
     something_shines(draft, source);
     light_fits(draft, source);
-    distances_fit(draft, source);
+    lengths_fit(draft, source);
     directions_differ(draft, source);
     if source.is_clean() {
         camera_is_in_free_space(draft, source);
@@ -58,50 +60,23 @@ fn light_fits(draft: &Draft, source: &mut Source<'_>) {
     }
 }
 
-/// From wherever a ray can start, every centre must be within the tracer's reach. (`camera_is_in_free_space` looks after
-/// the first ray.)
-fn distances_fit(draft: &Draft, source: &mut Source<'_>) {
+/// One scale must do for the largest sphere and for the smallest.
+fn lengths_fit(draft: &Draft, source: &mut Source<'_>) {
     let spheres: Vec<&Sphere> = draft.spheres.iter().map(|placed| &placed.sphere).collect();
-    for placed in &draft.spheres {
-        let (sphere, limit) = (&placed.sphere, reach(&placed.sphere));
-        let farthest = farthest_start(&spheres, sphere.centre);
-        if farthest >= limit {
-            let name = &sphere.name;
-            let cause = format!("a ray may start {farthest:.0} from the centre of \"{name}\"");
-            let message = format!("{cause}, beyond the tracer's reach ({limit}); make the scene smaller");
-            source.fault(placed.at, message);
-        }
-        // Within glass a ray goes from one side to the other.
-        if matches!(sphere.material, Material::Glass { .. }) && sphere.radius >= REACH {
-            let message =
-                format!("glass of this radius is beyond the tracer's reach ({REACH}); make it smaller");
-            source.fault(placed.at, message);
-        }
-    }
-}
-
-/// How far from its centre a ray may start.
-fn reach(sphere: &Sphere) -> f64 {
-    if sphere.hollow { REACH } else { 2.0 * REACH }
-}
-
-/// The greatest distance from `point` to where a ray can start, or a bound on it. In a room, what all hollow spheres have
-/// in common, that is its furthest point, and elsewhere the far side of some sphere.
-pub(super) fn farthest_start(spheres: &[&Sphere], point: [f64; 3]) -> f64 {
-    let far_side = |sphere: &&Sphere| length(sub(point, sphere.centre)) + sphere.radius;
-    let mut rooms = spheres.iter().copied().filter(|sphere| sphere.hollow).peekable();
-    if rooms.peek().is_none() {
-        return spheres.iter().map(far_side).fold(0.0, f64::max);
-    }
-    // Two bounds: each room's far side, and the corners of the box that all of them have in common.
-    let (mut nearest, mut low, mut high) = (f64::INFINITY, [f64::NEG_INFINITY; 3], [f64::INFINITY; 3]);
-    for room in rooms {
-        nearest = nearest.min(far_side(&room));
-        low = [0, 1, 2].map(|i| low[i].max(room.centre[i] - room.radius));
-        high = [0, 1, 2].map(|i| high[i].min(room.centre[i] + room.radius));
-    }
-    let corner = [0, 1, 2].map(|i| (point[i] - low[i]).abs().max((point[i] - high[i]).abs()));
-    nearest.min(length(corner))
+    let Err(found) = Scale::of(&spheres, &draft.camera) else {
+        return;
+    };
+    let small = &draft.spheres[found.small];
+    let (name, radius) = (&small.sphere.name, small.sphere.radius);
+    let beside = match found.large {
+        Some(large) => format!("\"{}\"", spheres[large].name),
+        None => "the camera's `near`".to_owned(),
+    };
+    let least = rounded_up(found.least);
+    let message = format!(
+        "sphere \"{name}\": a radius of {radius} is lost beside {beside}; make it at least {least:.1e}, or {beside} smaller"
+    );
+    source.fault(small.at, message);
 }
 
 fn directions_differ(draft: &Draft, source: &mut Source<'_>) {
@@ -115,62 +90,52 @@ fn directions_differ(draft: &Draft, source: &mut Source<'_>) {
 
 fn camera_is_in_free_space(draft: &Draft, source: &mut Source<'_>) {
     // What else a scene is seen at, `check_frame` checks: here it is the default picture.
-    let spheres = draft.spheres.iter().map(|placed| (&placed.sphere, placed.at));
-    let trouble = first_blocked_ray(&draft.camera, spheres, 256, 192);
-    if let Some((rays, blocked)) = trouble {
-        let message = match blocked {
-            Blocked::Inside(sphere, at) => format!(
-                "{rays} starts inside the solid of sphere \"{}\" (line {}); move the camera or change `near`",
-                sphere.name,
-                source.line(at)
-            ),
-            Blocked::TooFar(sphere, at) => format!(
-                "{rays} starts too far from the centre of sphere \"{}\" (line {}), beyond the tracer's reach ({}); move the camera nearer",
-                sphere.name,
-                source.line(at),
-                reach(sphere)
-            ),
-        };
+    let spheres: Vec<&Sphere> = draft.spheres.iter().map(|placed| &placed.sphere).collect();
+    if let Some(Blocked { rays, sphere }) = first_blocked_ray(&draft.camera, &spheres, 256, 192) {
+        let message = format!(
+            "{rays} starts inside the solid of sphere \"{}\" (line {}); move the camera or change `near`",
+            spheres[sphere].name,
+            source.line(draft.spheres[sphere].at)
+        );
         source.fault(draft.camera_at, message);
     }
 }
 
-/// Why rays cannot start where they do, with the sphere in question and whatever its caller knows it by.
-pub(super) enum Blocked<'s, T> {
-    Inside(&'s Sphere, T),
-    TooFar(&'s Sphere, T),
+/// Which rays of a picture start inside a solid, and the sphere's place in the list.
+pub(super) struct Blocked {
+    pub(super) rays: String,
+    pub(super) sphere: usize,
 }
 
-/// The first sphere that rays of a picture of this shape cannot start where they do for, and which rays these are.
+/// The first sphere inside whose solid rays of a picture of this shape start.
 ///
 /// What the tent filter adds to a picture, a quarter of a pixel, is left out: the few rays that start there in a wall are too
 /// few to be measured.
-pub(super) fn first_blocked_ray<'s, T>(
+pub(super) fn first_blocked_ray(
     camera: &Camera,
-    mut spheres: impl Iterator<Item = (&'s Sphere, T)>,
+    spheres: &[&Sphere],
     width: u16,
     height: u16,
-) -> Option<(String, Blocked<'s, T>)> {
+) -> Option<Blocked> {
     let patch = StartPatch::new(camera, width, height, 0.0);
-    spheres.find_map(|(sphere, tag)| {
+    let scale = Scale::of(spheres, camera).ok()?;
+    (0..).zip(spheres).find_map(|(index, sphere)| {
         let [(nearest, near_place), (furthest, far_place)] = patch.nearest_and_furthest(sphere.centre);
         let the = |place| format!("the {place} ray");
-        if furthest >= reach(sphere) {
-            return Some((the(far_place), Blocked::TooFar(sphere, tag)));
-        }
         let inside = match sphere {
             Sphere { hollow: true, .. } => (furthest >= sphere.radius).then(|| the(far_place)),
             _ if !is_opaque(sphere) => None,
             // Where rays start in a part of it, it is cut open; but nobody wants to see nothing but its inside.
             _ if furthest < sphere.radius => Some("every ray".to_owned()),
             // Cut open, it is crossed from side to side.
-            _ => (nearest < sphere.radius && sphere.radius >= REACH).then(|| the(near_place)),
+            _ => (nearest < sphere.radius && scale.core_length(sphere.radius) >= REACH)
+                .then(|| the(near_place)),
         };
-        inside.map(|rays| (rays, Blocked::Inside(sphere, tag)))
+        inside.map(|rays| Blocked { rays, sphere: index })
     })
 }
 
-/// Whether camera rays start within an opaque solid, or so near that rounding may put them there.
+/// Whether camera rays start within an opaque solid, or so near that rounding may put them there: all in a core's unit.
 pub(super) fn is_cut_open(sphere: &Sphere, patch: &StartPatch) -> bool {
     /// Some units of the last place of 16:16.
     const ROUNDING: f64 = 1.0 / 8192.0;

@@ -194,6 +194,11 @@ struct Surface<'a, P: Profile, F> {
 
 impl<P: Profile, F: Needs> OnShape<Interaction<P::Numbers>> for Surface<'_, P, F> {
     #[inline]
+    fn is_for<S: Shape>() -> bool {
+        F::NEEDS.has(S::CAPABILITY)
+    }
+
+    #[inline]
     fn call<S: Shape>(self, shape: &S) -> Interaction<P::Numbers> {
         shape.interaction::<P, F>(self.ray, self.standing, self.hit)
     }

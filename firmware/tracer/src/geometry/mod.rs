@@ -20,7 +20,7 @@ use bytemuck::{Pod, Zeroable};
 use crate::arithmetic::{Formats, vector};
 use crate::capability::{Capability, Needs};
 use crate::profile::Profile;
-use sphere::{HollowSphere, SolidSphere, SphereNumbers};
+use sphere::{HollowSphere, SolidSphere, SphereNumbers, VastNumbers, VastSphere};
 
 /// How a ray stands to a primitive that it may meet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -144,4 +144,6 @@ primitives::shapes! {
     hollow_spheres: HollowSphere, SphereNumbers;
     /// Spheres seen from without.
     solid_spheres: SolidSphere, SphereNumbers;
+    /// Spheres of radii that 16:16 has no room for, seen from either side.
+    vast_spheres: VastSphere, VastNumbers;
 }

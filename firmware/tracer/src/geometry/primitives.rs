@@ -116,16 +116,18 @@ macro_rules! shapes {
                 let _all = first;
             }
 
-            /// What `f` makes of the one primitive of this id; none where there is none.
+            /// What `f` makes of the one primitive of this id; none where there is none, or none of a kind that it is for.
             #[inline]
-            pub fn with<T>(
+            pub fn with<T, F: $crate::geometry::OnShape<T>>(
                 &self,
                 primitive: $crate::geometry::PrimitiveId,
-                f: impl $crate::geometry::OnShape<T>,
+                f: F,
             ) -> Option<T> {
                 let index = primitive.index();
                 $(
-                    if let Some(shape) = self.$array.get(index) {
+                    if F::is_for::<$shape>()
+                        && let Some(shape) = self.$array.get(index)
+                    {
                         return Some(f.call(shape));
                     }
                     let index = index - self.$array.len();
@@ -139,6 +141,9 @@ macro_rules! shapes {
 
 /// A function of one shape of whichever kind.
 pub trait OnShape<T> {
+    /// Whether it is for this kind: there is no code for the others.
+    fn is_for<S: Shape>() -> bool;
+
     /// Calls it.
     fn call<S: Shape>(self, shape: &S) -> T;
 }

@@ -3,7 +3,7 @@
 //!
 //! | bytes | header |
 //! | --- | --- |
-//! | 4 | magic "FXS3" |
+//! | 4 | magic "FXS4" |
 //! | 4 | what the scene needs: a bit for each [`Capability`](crate::capability::Capability) in its list's order |
 //! | 2 | materials |
 //! | 2 | the shift of the scene's grid |
@@ -34,7 +34,7 @@ pub const MAX_BYTES: usize =
 /// The longest record of a shape.
 const MAX_RECORD: usize = 48;
 
-const MAGIC: [u8; 4] = *b"FXS3";
+const MAGIC: [u8; 4] = *b"FXS4";
 
 /// Kinds of shape, filled up to a multiple of 8 bytes with the fields before.
 const COUNTS: usize = (KINDS + 2).next_multiple_of(4) - 2;

@@ -1,4 +1,4 @@
-//! Spheres, of two kinds: hollow ones are seen from within, solid ones from without.
+//! Spheres, of three kinds: hollow ones are seen from within, solid ones from without, and vast ones are next to planes.
 //!
 //! With `b = (c - o) . d` and the power of the origin turned round, `p = r^2 - |c - o|^2` (positive inside), a ray meets a sphere
 //! at `b - sqrt(b^2 + p)` and `b + sqrt(b^2 + p)`. How the profile solves that is [`Quadratic`].
@@ -7,11 +7,13 @@ mod coarse;
 mod hollow;
 mod numbers;
 mod solid;
+mod vast;
 
 pub use coarse::{CoarseRay, CoarseSphere};
 pub use hollow::HollowSphere;
 pub use numbers::SphereNumbers;
 pub use solid::SolidSphere;
+pub use vast::{Bend, VastNumbers, VastSphere};
 
 use bytemuck::{Pod, Zeroable};
 use fixedmath::{I1F31, I16F16, I32F32};
