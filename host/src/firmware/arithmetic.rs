@@ -27,10 +27,16 @@ impl Arithmetic {
         }
     }
 
-    /// The profile's own self-intersection epsilon.
-    pub const fn epsilon(self) -> I16F16 {
+    /// The profile's own self-intersection epsilon, in a core's unit, for a scene whose smallest sphere is 2^`magnification` times as
+    /// large for a core as that of the Cornell box.
+    ///
+    /// Ours is a few units of the last place, however large the scene. The published one is a length of the published scene.
+    pub fn epsilon(self, magnification: i32) -> I16F16 {
         match self {
-            Self::Paper => Paper::EPSILON,
+            Self::Paper if magnification < 0 => {
+                (Paper::EPSILON >> magnification.unsigned_abs().min(31)).max(I16F16::DELTA)
+            }
+            Self::Paper => Paper::EPSILON << magnification.min(10),
             Self::Precise => Precise::EPSILON,
         }
     }

@@ -120,8 +120,8 @@ impl ProfileOptions {
     pub fn subject(&self) -> Result<Subject, ProfileError> {
         let scene = Scene::load(&workspace::scene(self.scene.as_deref())?)?;
         let epsilon = match self.epsilon {
-            Some(epsilon) => epsilon.for_core(scene.scale())?,
-            None => self.profile.epsilon(),
+            Some(epsilon) => epsilon.for_core(scene.scale().exponent)?,
+            None => self.profile.epsilon(scene.scale().magnification),
         };
         Ok(self.subject_of(scene.name, epsilon))
     }

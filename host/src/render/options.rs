@@ -15,7 +15,7 @@ use crate::firmware::arithmetic::Arithmetic;
 use crate::firmware::board::Board;
 use crate::firmware::{Level, SoftFloat};
 use crate::platform::workspace::{self, NoWorkspace};
-use crate::scene::MAX_LENGTH;
+use crate::scene::{MAX_LENGTH, Scale};
 
 /// A film of this many pixels takes half a gigabyte.
 const MOST_PIXELS: u32 = 1 << 24;
@@ -106,9 +106,8 @@ pub struct RenderOptions {
 }
 
 impl PictureOptions {
-    /// The plan that all cores share, with units of so many samples per pixel, in a scene whose lengths are times 2^`scale` for a
-    /// core.
-    pub fn plan(&self, samples_per_unit: u16, scale: i32) -> Result<Plan, EpsilonError> {
+    /// The plan that all cores share, with units of so many samples per pixel, in a scene of this scale.
+    pub fn plan(&self, samples_per_unit: u16, scale: Scale) -> Result<Plan, EpsilonError> {
         Ok(Plan {
             width: self.size.width,
             height: self.size.height,
@@ -117,8 +116,8 @@ impl PictureOptions {
             seed: self.seed,
             termination: self.termination.0,
             epsilon: match self.epsilon {
-                Some(epsilon) => epsilon.for_core(scale)?,
-                None => self.profile.epsilon(),
+                Some(epsilon) => epsilon.for_core(scale.exponent)?,
+                None => self.profile.epsilon(scale.magnification),
             },
         })
     }
@@ -227,11 +226,11 @@ pub enum EpsilonError {
 }
 
 impl Epsilon {
-    /// As a core has it, in a scene whose lengths are times 2^`scale` for a core.
-    pub fn for_core(self, scale: i32) -> Result<I16F16, EpsilonError> {
+    /// As a core has it, in a scene whose lengths are times 2^`exponent` for a core.
+    pub fn for_core(self, exponent: i32) -> Result<I16F16, EpsilonError> {
         // Camera rays of the standard scene start 140 before it; an epsilon of that size would skip all of it.
         const MOST: f64 = 100.0;
-        let (epsilon, unit) = (self.0, 2f64.powi(scale));
+        let (epsilon, unit) = (self.0, 2f64.powi(exponent));
         if epsilon * unit > MOST {
             let most = MOST / unit;
             return Err(EpsilonError::Long { epsilon, most });
@@ -318,6 +317,7 @@ pub fn samples_per_pixel(text: &str) -> Result<u32, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Scene;
     use clap::Parser;
 
     #[derive(Debug, Parser)]
@@ -347,15 +347,21 @@ mod tests {
         );
         let out = picture.out("cornell").expect("tests run in the checkout");
         assert!(out.ends_with("out/cornell-precise"), "{}", out.display());
-        let plan = picture.plan(64, 0).expect("no epsilon");
+        let plan = picture.plan(64, published()).expect("no epsilon");
         assert_eq!(
             (plan.width, plan.height, plan.spp, plan.samples_per_unit),
             (256, 192, 64, 64)
         );
         assert_eq!(
             (plan.termination, plan.epsilon),
-            (Termination::Roulette, Arithmetic::Precise.epsilon())
+            (Termination::Roulette, Arithmetic::Precise.epsilon(0))
         );
+    }
+
+    /// The scale of the published scene.
+    fn published() -> Scale {
+        let path = workspace::scene(None).expect("tests run in the checkout");
+        Scene::load(&path).expect("it is in order").scale()
     }
 
     #[test]
@@ -394,11 +400,11 @@ mod tests {
             "--no-install",
         ])
         .expect("these are all good");
-        let plan = options.picture.plan(32, 0).expect("as published");
+        let plan = options.picture.plan(32, published()).expect("as published");
         assert_eq!(options.boards, Board::ALL);
         assert_eq!(
             (plan.spp, plan.samples_per_unit, plan.epsilon),
-            (1024, 32, Arithmetic::Paper.epsilon())
+            (1024, 32, Arithmetic::Paper.epsilon(0))
         );
         assert_eq!((plan.termination, plan.seed), (Termination::Depth(7), u64::MAX));
         assert_eq!(options.picture.reference, Some(Reference::None));
@@ -407,9 +413,9 @@ mod tests {
     #[test]
     fn an_epsilon_is_a_length_of_the_scene() {
         let epsilon = |text: &str| text.parse::<Epsilon>().expect("a length");
-        assert_eq!(epsilon("0.1").for_core(0), Ok(Arithmetic::Paper.epsilon()));
+        assert_eq!(epsilon("0.1").for_core(0), Ok(Arithmetic::Paper.epsilon(0)));
         assert_eq!(epsilon("0.1").for_core(-3), Ok(I16F16::from_bits(819)));
-        assert_eq!(epsilon("1e-9").for_core(40), Ok(I16F16::from_bits(72_057_594)));
+        assert_eq!(epsilon("1e-11").for_core(40), Ok(I16F16::from_bits(720_576)));
         let refused = |text: &str, scale| epsilon(text).for_core(scale).unwrap_err().to_string();
         assert!(refused("32768", 0).contains("too long for this scene: use at most 100"));
         assert!(refused("1e-6", 0).contains("use 0, or at least 0.0000152587890625"));

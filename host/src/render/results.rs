@@ -212,7 +212,7 @@ impl Results<'_> {
             termination: options.termination.to_string(),
             pixels: options.pixels.name().to_owned(),
             seed: plan.seed,
-            epsilon: f64::from(plan.epsilon) * 2f64.powi(-self.job.compiled.scale),
+            epsilon: f64::from(plan.epsilon) * 2f64.powi(-self.job.compiled.scale.exponent),
             image_sha256: self.collection.film.sha256(),
             samples: self.collection.film.samples(),
             missing_pixels: self.collection.film.missing(),

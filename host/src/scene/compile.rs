@@ -21,7 +21,7 @@ use super::vector::{cross, normalised};
 use super::{Camera, Material, Scene, Sphere};
 
 /// A scene as cores get it, and a view of it.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct CompiledScene {
     /// The scene's bytes, the same wherever it is seen from.
     pub blob: Blob,
@@ -31,8 +31,8 @@ pub struct CompiledScene {
     pub camera: CameraRecord,
     /// What the image must be built with for scene and camera.
     pub needs: Capabilities,
-    /// Cores' lengths are the scene's times 2^scale.
-    pub scale: i32,
+    /// How cores' lengths come from the scene's.
+    pub scale: Scale,
     /// Cores' radiance is the scene's times 2^exponent; 0 for all scenes but those whose light would not fit as it is.
     pub exponent: i32,
 }
@@ -90,8 +90,7 @@ const FILTER: f64 = 0.25;
 /// # Panics
 /// If the scene is too wide for a core, which a checked one is not.
 pub fn compile(scene: &Scene, width: u16, height: u16) -> CompiledScene {
-    let all: Vec<&Sphere> = scene.spheres.iter().collect();
-    let scale = Scale::of(&all, &scene.camera).expect("a checked scene fits a core");
+    let scale = scene.scale();
     let exponent = Light::of(scene.spheres.iter()).exponent();
     let scene = near_origin(scale.applied(scene), scale);
     let all: Vec<&Sphere> = scene.spheres.iter().collect();
@@ -135,7 +134,7 @@ pub fn compile(scene: &Scene, width: u16, height: u16) -> CompiledScene {
         needs: needs.union(camera.needs()),
         blob,
         camera,
-        scale: scale.exponent,
+        scale,
         exponent,
     }
 }

@@ -21,11 +21,10 @@ mod vector;
 
 use std::path::{Path, PathBuf};
 
-use scale::Scale;
-
 pub(crate) use compile::record as sphere_record;
 pub(crate) use reach::REACH;
 pub use compile::{Blob, CompiledScene, compile};
+pub use scale::Scale;
 pub use unit_size::samples_per_unit;
 
 /// A checked scene.
@@ -187,14 +186,13 @@ impl Scene {
         }
     }
 
-    /// The scale at which cores see it: their lengths are the scene's times 2^scale.
+    /// The scale at which cores see it.
     ///
     /// # Panics
     /// If the scene is too wide for a core, which a checked one is not.
-    pub fn scale(&self) -> i32 {
+    pub fn scale(&self) -> Scale {
         let spheres: Vec<&Sphere> = self.spheres.iter().collect();
-        let scale = Scale::of(&spheres, &self.camera).expect("a checked scene fits a core");
-        scale.exponent
+        Scale::of(&spheres, &self.camera).expect("a checked scene fits a core")
     }
 
     /// Checks that every ray of a picture of this size starts in free space.

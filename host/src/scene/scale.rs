@@ -18,13 +18,18 @@ const FINE: f64 = 4.0;
 /// The longest ordinary radius: the largest whole number of 16:16.
 pub(super) const LONGEST: f64 = 32_767.0;
 
+/// The smallest radius of the Cornell box, rounded down to a power of two.
+const PUBLISHED: f64 = 16.0;
+
 /// How a core's lengths come from a scene's.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Scale {
+pub struct Scale {
     /// They are the scene's times 2^exponent.
-    pub(super) exponent: i32,
+    pub exponent: i32,
+    /// The smallest sphere is 2^magnification times as large for a core as that of the Cornell box, or up to twice that.
+    pub magnification: i32,
     /// Spheres of this radius and longer ones are vast, in the scene's unit.
-    pub(super) vast_from: f64,
+    vast_from: f64,
 }
 
 /// A scene of which no scale is right: beside `large`, `small` is lost.
@@ -65,8 +70,10 @@ impl Scale {
                 least: MIN_CORE_RADIUS * power(-limit.exponent),
             });
         }
+        let core_radius = smallest_radius * power(limit.exponent);
         Ok(Self {
             exponent: limit.exponent,
+            magnification: (core_radius / PUBLISHED).log2().floor() as i32,
             vast_from,
         })
     }
