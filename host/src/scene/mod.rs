@@ -22,8 +22,8 @@ mod vector;
 use std::path::{Path, PathBuf};
 
 pub(crate) use compile::record as sphere_record;
-pub(crate) use reach::REACH;
 pub use compile::{Blob, CompiledScene, compile};
+pub(crate) use reach::REACH;
 pub use scale::Scale;
 pub use unit_size::samples_per_unit;
 

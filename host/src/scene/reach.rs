@@ -86,7 +86,7 @@ impl<'s> Extent<'s> {
             high = [0, 1, 2].map(|i| high[i].max(sphere.centre[i] + sphere.radius));
         }
         self.middle = [0, 1, 2].map(|i| f64::midpoint(low[i], high[i]));
-        self.radius = self.from_camera(self.middle);
+        self.radius = self.camera_reach(self.middle);
         for (index, sphere) in small {
             self.widen(far_side(self.middle, sphere), index);
         }
@@ -155,7 +155,7 @@ impl<'s> Extent<'s> {
         spheres.filter(|(_, sphere)| sphere.scatters())
     }
 
-    fn from_camera(&self, point: [f64; 3]) -> f64 {
+    fn camera_reach(&self, point: [f64; 3]) -> f64 {
         length(sub(point, self.camera.position)) + self.camera.near
     }
 
@@ -177,7 +177,7 @@ impl<'s> Extent<'s> {
                 return length(sub(point, self.middle)) + self.radius;
             }
             let sides = self.scattering().map(|(_, sphere)| far_side(point, sphere));
-            return sides.fold(self.from_camera(point), f64::max);
+            return sides.fold(self.camera_reach(point), f64::max);
         }
         // Two bounds: each room's far side, and the corners of the box that all of them have in common.
         let hollow = self.spheres.iter().filter(|sphere| sphere.hollow);

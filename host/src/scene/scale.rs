@@ -12,9 +12,9 @@ use super::reach::{Extent, REACH, reach};
 use super::vector::{length, sub};
 use super::{Camera, MIN_CORE_RADIUS, Scene, Sphere};
 
-/// A smallest radius for a core of which no vast spheres are made. At a quarter of it the Cornell box' lockstep bias begins to be
-/// seen (0.05 % with a radius of 0.5), and the longest scale of an ordinary sphere costs less than a vast one.
-const FINE: f64 = 4.0;
+/// A smallest radius for a core that is not worth a vast sphere, which costs more than an ordinary one. The Cornell box at an eighth,
+/// with a smallest radius of 2.06, has a lockstep bias of -0.008 % +- 0.019 %, at a 32nd one of -0.045 % +- 0.026 %.
+const FINE: f64 = 2.0;
 /// The longest ordinary radius: the largest whole number of 16:16.
 pub(super) const LONGEST: f64 = 32_767.0;
 

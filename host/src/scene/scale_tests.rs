@@ -91,7 +91,7 @@ fn walls_that_would_leave_too_little_of_the_rest_are_vast() {
             .map(|sphere| sphere.radius)
             .fold(f64::INFINITY, f64::min);
         assert!(
-            smallest * 2f64.powi(compiled.scale.exponent) >= 4.0,
+            smallest * 2f64.powi(compiled.scale.exponent) >= 2.0,
             "{:?}",
             compiled.scale
         );

@@ -67,9 +67,11 @@ impl Draw {
             _ => self.walls(&mut text, base, low, high),
         }
         let size = (0..3).map(|i| high[i] - low[i]).fold(f64::INFINITY, f64::min);
+        // Beside small balls walls are vast, and no room is proved of them.
+        let smallest = if self.case(3) == 0 { 0.02 } else { 0.2 };
         for ball in 0..1 + self.case(8) {
             let centre = [0, 1, 2].map(|i| within(self, i, 1.0));
-            let radius = self.magnitude(0.02, 0.5) * size;
+            let radius = self.magnitude(smallest, 0.5) * size;
             let emission = if ball == 0 { 1 } else { 0 };
             let material = self.material();
             let _ = write!(
