@@ -266,6 +266,6 @@ fn pictures_are_the_golden_ones_to_the_bit() {
 }
 
 const GOLDEN: [&str; 2] = [
-    "c45891dc18c3da035e53483a7702a9ac251fb56183066d7a05d89d1ff96d39cb",
+    "7f747d408780baa786eea4f9e66ee325725eefbc1afb29220b9b8119d9e00fd4",
     "3e19da610219518bcf7fa47fba4fc0a658556deb181bfb8137694b8444a3d114",
 ];
