@@ -12,8 +12,8 @@ use tracer::camera::Camera;
 use tracer::integrator::{Integrator, Path};
 use tracer::profile::Precise;
 use tracer::scene::{All, Capability};
-use tracer::unit::{SPAN, render};
-use whole_system::{estimate, plan, reference, repository};
+use tracer::unit::{Plan, SPAN, render};
+use whole_system::{estimate, film, plan, reference, repository};
 use wire::SUM_MAX;
 
 fn compared(scene: &Scene, width: u16, height: u16, spp: u32) -> Comparison {
@@ -90,28 +90,82 @@ fn sums_of_bright_mirrors_fit() {
     }
 }
 
-/// A glass ball alone under a white sky is white but for what it absorbs, to its very edge.
+/// A glass ball alone under a white sky is white but for what it absorbs, to its very edge, however small it is beside the sky: for a
+/// core, from a radius of 2,048 down to 1/2.
 #[test]
 fn glass_balls_of_any_radius() {
-    for radius in [1.0 / 256.0, 0.01, 0.1, 0.5, 1.0, 10.0, 100.0, 2000.0] {
+    for sky in [5.0, 20.0, 200.0, 1000.0, 5000.0, 20_000.0] {
         let text = format!(
-            "format = 1\n[camera]\nposition = [0, 0, {}]\ndirection = [0, 0, -1]\nplane_height = 0.6\n\
-             [[sphere]]\nname = \"sky\"\nhollow = true\ncentre = [0, 0, 0]\nradius = {}\n\
+            "format = 1\n[camera]\nposition = [0, 0, 4]\ndirection = [0, 0, -1]\nplane_height = 0.6\n\
+             [[sphere]]\nname = \"sky\"\nhollow = true\ncentre = [0, 0, 0]\nradius = {sky}\n\
              emission = [1, 1, 1]\ndiffuse = [0, 0, 0]\n\
-             [[sphere]]\nname = \"ball\"\ncentre = [0, 0, 0]\nradius = {radius}\n\
+             [[sphere]]\nname = \"ball\"\ncentre = [0, 0, 0]\nradius = 1\n\
              glass = [0.999, 0.999, 0.999]\nindex = 1.5\n",
-            4.0 * radius,
-            5.0 * radius
         );
         let scene = Scene::parse("ring.toml", &text).unwrap();
-        no_tile_is_off(&format!("radius {radius}"), &compared(&scene, 64, 64, 64));
+        no_tile_is_off(&format!("sky {sky}"), &compared(&scene, 64, 64, 64));
         let (fixed, exact) = estimate::<Precise>(&scene, &plan::<Precise>(64, 64, 64));
         let [fixed, exact] = [fixed, exact].map(|it| it.picture.mean().unwrap()[0]);
         // Five of the 262,144 paths may be black on one side only, by chance: roulette ends one in a thousand of those that
-        // rounding has parted. Of the ball of 0.1, forty were.
+        // rounding has parted. Of a ball of 0.1 for a core, forty were.
         assert!(
             (fixed - exact).abs() < 5.0 / 262_144.0,
-            "radius {radius}: {fixed} instead of {exact}"
+            "sky {sky}: {fixed} instead of {exact}"
         );
+    }
+}
+
+fn named(path: &str) -> Scene {
+    Scene::load(&repository(path)).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// The scene with all its lengths times `factor`.
+fn times(mut scene: Scene, factor: f64) -> Scene {
+    scene.camera.position = scene.camera.position.map(|c| c * factor);
+    scene.camera.near *= factor;
+    for sphere in &mut scene.spheres {
+        sphere.centre = sphere.centre.map(|c| c * factor);
+        sphere.radius *= factor;
+    }
+    scene
+}
+
+/// Walls of radius 1e4 that are proved to be a room, walls of 1e5 that are vast, and a ball inside a ball of glass: in millimetres and in
+/// light years they are one picture; in feet, one but for noise.
+#[test]
+fn lengths_have_no_unit() {
+    for path in [
+        "scenes/cornell.toml",
+        "scenes/smallpt.toml",
+        "scenes/hard/overlap.toml",
+    ] {
+        let scene = named(path);
+        let plan = plan::<Precise>(32, 24, 16);
+        let hash = film::<Precise>(&scene, &plan).sha256();
+        for power in [-50, -8, -1, 1, 8, 40] {
+            let scaled = times(scene.clone(), 2f64.powi(power));
+            assert_eq!(
+                film::<Precise>(&scaled, &plan).sha256(),
+                hash,
+                "{path} times 2^{power}"
+            );
+        }
+        for factor in [0.3048, 1000.0 / 3.0] {
+            let (scaled, _) = estimate::<Precise>(&times(scene.clone(), factor), &plan);
+            let (original, _) = estimate::<Precise>(&scene, &Plan { seed: 2, ..plan });
+            let found = compare(&scaled, &original).unwrap();
+            no_tile_is_off(&format!("{path} times {factor}"), &found);
+        }
+    }
+}
+
+/// Scenes as people have them, with radii of 1e4 to 1.1e5 beside balls of 5: grounds, skies, and a pool that is vast and of glass.
+#[test]
+fn smallpt_and_its_extra_scenes() {
+    let mut paths = vec!["scenes/smallpt.toml".to_owned()];
+    let names = ["forest", "island", "nightsky", "sky", "vista", "wada", "wada2"];
+    paths.extend(names.map(|name| format!("scenes/extra/{name}.toml")));
+    for path in paths {
+        no_tile_is_off(&path, &compared(&named(&path), 32, 24, 256));
     }
 }
