@@ -1,17 +1,27 @@
 //! The reference: an independent path tracer in double precision, on all of the host's cores.
 //!
+//! `docs/reference.md` says by what method, and how it is checked. The rooms within: `vector` and `sampling` below all,
+//! `ball` (intersection), `camera`, `lights` (where light may come from), and `path`, which puts them together.
+//!
 //! It tells what the picture *should* look like, and how sure it is of every pixel. Each row of the picture draws from a
 //! stream of its own (the generator's `jump` puts 2^128 numbers between them), so that the same seed gives the same
 //! picture on any number of threads. [`cache`] keeps results.
 
+mod ball;
 pub mod cache;
+mod camera;
+mod lights;
 mod path;
+mod sampling;
+mod vector;
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::SeedableRng;
 use rayon::prelude::*;
+
+use sampling::Batch;
 
 use crate::image::picture::{Estimate, Picture};
 use crate::scene::Scene;
@@ -59,8 +69,24 @@ pub fn render(scene: &Scene, job: &Job, progress: impl Fn(u64) + Sync) -> Estima
         "{} samples per pixel: must be a multiple of 4",
         job.spp
     );
-    let world = path::World::new(scene);
-    let view = path::View::new(&scene.camera, job.width, job.height);
+    render_world(
+        &path::World::new(scene),
+        sampling::side(job.spp / 4),
+        scene,
+        job,
+        progress,
+    )
+}
+
+/// Renders `world`, which is that of `scene`, in batches of `side` squared samples.
+fn render_world(
+    world: &path::World,
+    side: usize,
+    scene: &Scene,
+    job: &Job,
+    progress: impl Fn(u64) + Sync,
+) -> Estimate {
+    let view = camera::View::new(&scene.camera, job.width, job.height);
     let done = AtomicU64::new(0);
     let mut stream = Xoshiro256PlusPlus::seed_from_u64(job.seed);
     let streams: Vec<_> = (0..job.height)
@@ -75,7 +101,7 @@ pub fn render(scene: &Scene, job: &Job, progress: impl Fn(u64) + Sync) -> Estima
         .zip(streams)
         .flat_map_iter(|(row, mut random)| {
             let pixels: Vec<_> = (0..job.width)
-                .map(|column| pixel(&world, &view, [column, row], job, &mut random))
+                .map(|column| pixel(world, &view, side, [column, row], job, &mut random))
                 .collect();
             let samples = u64::from(job.width) * u64::from(job.spp);
             progress(done.fetch_add(samples, Ordering::Relaxed) + samples);
@@ -96,21 +122,29 @@ pub fn render(scene: &Scene, job: &Job, progress: impl Fn(u64) + Sync) -> Estima
 /// Mean and variance of the mean of one pixel.
 fn pixel(
     world: &path::World,
-    view: &path::View,
+    view: &camera::View,
+    side: usize,
     place: [u16; 2],
     job: &Job,
     random: &mut Xoshiro256PlusPlus,
 ) -> ([f64; 3], [f64; 3]) {
-    let per_sub_pixel = job.spp / 4;
+    let batches = job.spp / 4 / (side * side) as u32;
     let mut strata = [Moments::default(); 4];
     for (moments, sub_pixel) in strata.iter_mut().zip([[0, 0], [1, 0], [0, 1], [1, 1]]) {
-        for _ in 0..per_sub_pixel {
-            moments.add(world.sample(view, place, sub_pixel, job.termination, random));
+        for _ in 0..batches {
+            let batch = Batch::new(side, random);
+            let mut sum = [0.0; 3];
+            for sample in 0..batch.size() {
+                let mut draws = batch.draws(sample, random);
+                let radiance = world.sample(view, place, sub_pixel, job.termination, &mut draws);
+                sum = [0, 1, 2].map(|channel| sum[channel] + radiance[channel]);
+            }
+            moments.add(sum.map(|sum| sum / batch.size() as f64));
         }
     }
     let mean = [0, 1, 2].map(|channel| strata.iter().map(|stratum| stratum.mean[channel]).sum::<f64>() / 4.0);
     // The sub-pixels are strata of equal weight: the variances of their means add up, over 4 squared.
-    let variance = if per_sub_pixel > 1 {
+    let variance = if batches > 1 {
         [0, 1, 2].map(|channel| {
             strata
                 .iter()
@@ -149,5 +183,7 @@ impl Moments {
     }
 }
 
+#[cfg(test)]
+mod agreement;
 #[cfg(test)]
 mod tests;
