@@ -212,6 +212,10 @@ impl<F: Float> VastNumbers for Floating<F> {
         dot(normal.map(Self::unit), direction) - curvature::<F>(bend) * dot(above, direction)
     }
 
+    fn height_at(bend: Bend, height: F, slope: F, t: F) -> F {
+        height + t * slope - curvature::<F>(bend) * F::of(0.5) * t * t
+    }
+
     fn root_of_slope(bend: Bend, height: F, slope: F) -> Option<F> {
         let square = slope * slope + F::of(2.0) * curvature::<F>(bend) * height;
         (square >= F::ZERO).then(|| square.root())

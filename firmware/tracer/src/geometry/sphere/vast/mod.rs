@@ -150,7 +150,13 @@ impl VastSphere {
             } else {
                 P::Numbers::is_below(height)
             };
-        if !has_inside && !self.is_hollow() && P::Numbers::is_below(height) {
+        let passes = if self.is_hollow() {
+            // Once under it, a ray stays there.
+            !P::Numbers::is_below(P::Numbers::height_at(self.bend, height, slope, t_max))
+        } else {
+            !below && (slope >= P::Numbers::ZERO || P::Numbers::is_below(height))
+        };
+        if passes {
             return None;
         }
         let root = P::Numbers::root_of_slope(self.bend, height, slope)?;

@@ -69,6 +69,8 @@ pub trait VastNumbers: Directions {
         above: [Self::Length; 3],
         direction: [Self::Unit; 3],
     ) -> Self::Unit;
+    /// The height at `t` along the ray.
+    fn height_at(bend: Bend, height: Self::Height, slope: Self::Unit, t: Self::Length) -> Self::Height;
     /// How steeply a ray crosses the surface; `None` where it passes by.
     fn root_of_slope(bend: Bend, height: Self::Height, slope: Self::Unit) -> Option<Self::Unit>;
     /// Whether a ray is so flat to the surface where it meets it that rounding decides on which side it is.
@@ -109,6 +111,7 @@ fn upper(a: i64, b: i32, shift: u32) -> i64 {
     }
 }
 
+#[inline]
 fn sum_of_products(a: [i32; 3], b: [i32; 3]) -> i64 {
     let times = |i: usize| i64::from(a[i]) * i64::from(b[i]);
     times(0) + times(1) + times(2)
@@ -119,16 +122,19 @@ impl VastNumbers for Mixed {
 
     const LEVEL: I18F46 = I18F46::ZERO;
 
+    #[inline]
     fn height(normal: [I2F30; 3], bend: Bend, above: [I16F16; 3]) -> I18F46 {
         let above = above.map(I16F16::to_bits);
         let sag = upper(sum_of_products(above, above), bend.curvature, 31);
         I18F46::from_bits(sum_of_products(above, normal.map(I2F30::to_bits)) - sag)
     }
 
+    #[inline]
     fn is_below(height: I18F46) -> bool {
         height < I18F46::ZERO
     }
 
+    #[inline]
     fn slope(normal: [I2F30; 3], bend: Bend, above: [I16F16; 3], direction: [I2F30; 3]) -> I2F30 {
         let direction = direction.map(I2F30::to_bits);
         let along = sum_of_products(above.map(I16F16::to_bits), direction);
@@ -136,6 +142,14 @@ impl VastNumbers for Mixed {
         I2F30::from_bits(((slope + (1 << 29)) >> 30) as i32)
     }
 
+    #[inline]
+    fn height_at(bend: Bend, height: I18F46, slope: I2F30, t: I16F16) -> I18F46 {
+        let t = i64::from(t.to_bits());
+        let gain = t * i64::from(slope.to_bits()) - upper(t * t, bend.curvature, 31);
+        I18F46::from_bits(height.to_bits() + gain)
+    }
+
+    #[inline]
     fn root_of_slope(bend: Bend, height: I18F46, slope: I2F30) -> Option<I2F30> {
         let slope = i64::from(slope.to_bits());
         let square = slope * slope + upper(height.to_bits(), bend.curvature, 29);
@@ -147,6 +161,7 @@ impl VastNumbers for Mixed {
         root <= I2F30::from_bits(4)
     }
 
+    #[inline]
     fn goes_under(bend: Bend, height: I18F46, slope: I2F30, root: I2F30, t_max: I16F16) -> Option<I16F16> {
         let (slope, root) = (slope.to_bits(), root.to_bits());
         let t_max = t_max.to_bits() as u64;
@@ -204,6 +219,10 @@ impl VastNumbers for Published {
 
     fn slope(normal: [I2F30; 3], bend: Bend, above: [I16F16; 3], direction: [I16F16; 3]) -> I16F16 {
         Self::unit(Mixed::slope(normal, bend, above, direction.map(fine)))
+    }
+
+    fn height_at(bend: Bend, height: I18F46, slope: I16F16, t: I16F16) -> I18F46 {
+        Mixed::height_at(bend, height, fine(slope), t)
     }
 
     fn root_of_slope(bend: Bend, height: I18F46, slope: I16F16) -> Option<I16F16> {
