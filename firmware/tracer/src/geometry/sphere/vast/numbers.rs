@@ -169,7 +169,7 @@ impl VastNumbers for Mixed {
             if !bend.is_towards() {
                 return None;
             }
-            let t = (u64::from((slope + root) as u32) * bend.radius as u64) >> (30 - bend.shift);
+            let t = (u64::from(slope.wrapping_add(root) as u32) * bend.radius as u64) >> (30 - bend.shift);
             return (t < t_max).then(|| I16F16::from_bits(t as i32));
         }
         if height <= I18F46::ZERO {
