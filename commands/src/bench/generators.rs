@@ -85,7 +85,7 @@ fn draw(path: &Path) -> anyhow::Result<Effect> {
     let job = reference::Job {
         width: 256,
         height: 192,
-        spp: 4096,
+        spp: 1024,
         termination: reference::Termination::Roulette,
         seed: 0x5eed,
     };

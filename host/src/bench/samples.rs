@@ -160,7 +160,7 @@ impl Series {
                 pixels: Pixels::Leased,
                 seed: 1,
                 reference: None,
-                reference_spp: self.reference_spp,
+                reference_spp: Some(self.reference_spp),
                 patience: None,
                 reference_cache: None,
                 out: Some(out.to_owned()),

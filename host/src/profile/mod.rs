@@ -152,7 +152,7 @@ impl ProfileOptions {
             pixels: Pixels::Leased,
             seed: self.seed,
             reference: Some(Reference::None),
-            reference_spp: self.spp,
+            reference_spp: None,
             patience: None,
             reference_cache: None,
             out: Some(out.to_owned()),

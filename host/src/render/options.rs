@@ -52,9 +52,9 @@ pub struct PictureOptions {
     /// What to compare with: `none`, or an OpenEXR file [default: computed in double precision, and kept]
     #[arg(long, value_name = "none|FILE", value_parser = OsStringValueParser::new().map(Reference::from))]
     pub reference: Option<Reference>,
-    /// Samples per pixel of the computed reference, a multiple of 4
-    #[arg(long, value_name = "N", default_value = "512", value_parser = samples_per_pixel, allow_negative_numbers = true)]
-    pub reference_spp: u32,
+    /// Samples per pixel of the computed reference, a multiple of 4 [default: as many as it takes for a third of the picture's noise]
+    #[arg(long, value_name = "N", value_parser = samples_per_pixel, allow_negative_numbers = true)]
+    pub reference_spp: Option<u32>,
     /// Give the cores up when none has said a word for so long [default: wait while their processes live; of cores started
     /// elsewhere, for a minute, and for 20 times what a unit has taken at most]
     #[arg(long, value_name = "SECONDS", value_parser = clap::value_parser!(u64).range(1..), allow_negative_numbers = true)]

@@ -128,6 +128,15 @@ pub struct ErrorFigures {
     pub bias: Option<f64>,
     /// Upper bound of the standard error of `bias`.
     pub bias_standard_error: Option<f64>,
+    /// The picture's part of it: upper bound of the standard error of its mean, relative to the reference's.
+    #[serde(default)]
+    pub standard_error: Option<f64>,
+    /// The reference's part of it.
+    #[serde(default)]
+    pub reference_standard_error: Option<f64>,
+    /// Over the 8x8 tiles, the median of the reference's standard error over the picture's.
+    #[serde(default)]
+    pub reference_tile_noise_share: Option<f64>,
     /// Noise-corrected root of the mean squared error, linear radiance. Null unless both sides' noise is known.
     pub rmse: Option<f64>,
     /// The largest `rmse` that the noise leaves room for: two standard errors up.
@@ -214,6 +223,9 @@ impl ErrorFigures {
         Self {
             bias: comparison.bias,
             bias_standard_error: comparison.bias_standard_error.filter(|_| noise_known),
+            standard_error: comparison.standard_error,
+            reference_standard_error: comparison.reference_standard_error,
+            reference_tile_noise_share: comparison.noise_share.map(|share| share.tile),
             rmse: known(comparison.rmse),
             rmse_at_most: known(comparison.squared_error.rmse_at_most()),
             squared_error: known(comparison.squared_error.corrected),
@@ -347,6 +359,9 @@ mod tests {
             "mean",
             "reference_mean",
             "reference_spp",
+            "standard_error",
+            "reference_standard_error",
+            "reference_tile_noise_share",
         ] {
             assert_eq!(json["error"].get(key), Some(&Value::Null), "{key}");
         }

@@ -22,7 +22,7 @@ use crate::oracle::compare::{Comparison, compare};
 use crate::oracle::difference;
 use crate::oracle::lockstep;
 use crate::oracle::noise;
-use crate::oracle::reference::{self, cache};
+use crate::oracle::reference::{self, cache, effort};
 use crate::platform::console::note;
 use crate::platform::file::WriteError;
 use crate::render::report::{self, Cost, LockstepError, Report};
@@ -64,12 +64,12 @@ impl Results<'_> {
         if self.job.options.reference == Some(Reference::None) {
             return Ok(None);
         }
-        let reference = match &self.job.reference {
-            Some(given) => given.clone(),
-            None => self.computed_reference(),
-        };
         let oracle = self.oracle();
         let image = self.image(oracle.as_ref().and_then(|oracle| self.variance(oracle)));
+        let reference = match &self.job.reference {
+            Some(given) => given.clone(),
+            None => self.computed_reference(&image),
+        };
         let lockstep = oracle.map(|oracle| LockstepError::between(&image.picture, &oracle.picture));
         let comparison = compare(&image, &reference)?;
         Ok(Some(Verdict {
@@ -79,26 +79,34 @@ impl Results<'_> {
         }))
     }
 
-    fn computed_reference(&self) -> Estimate {
+    /// The reference for `image`: with as many samples as were asked for, else as many as it takes.
+    fn computed_reference(&self, image: &Estimate) -> Estimate {
         let options = &self.job.options;
-        let job = reference::Job {
-            width: options.size.width,
-            height: options.size.height,
-            spp: options.reference_spp,
-            termination: match options.termination.0 {
-                Termination::Roulette => reference::Termination::Roulette,
-                Termination::Depth(depth) => reference::Termination::Depth(depth),
-            },
-            seed: REFERENCE_SEED,
+        let termination = match options.termination.0 {
+            Termination::Roulette => reference::Termination::Roulette,
+            Termination::Depth(depth) => reference::Termination::Depth(depth),
         };
-        note(format!(
-            "comparing with double precision at {} samples per pixel",
-            job.spp
-        ));
+        match options.reference_spp {
+            Some(spp) => self.rendered_reference(&reference::Job {
+                width: options.size.width,
+                height: options.size.height,
+                spp,
+                termination,
+                seed: REFERENCE_SEED,
+            }),
+            None => {
+                let render = |job: &reference::Job| self.rendered_reference(job);
+                effort::reference_for(image, termination, REFERENCE_SEED, render)
+            }
+        }
+    }
+
+    fn rendered_reference(&self, job: &reference::Job) -> Estimate {
+        note(format!("double precision at {} samples per pixel", job.spp));
         let bar = bar("reference", job.samples());
         let done = |samples| bar.set_position(samples);
-        let folder = cache::folder(options.reference_cache.as_deref());
-        let (estimate, origin) = cache::reference(folder.as_deref(), &self.job.scene, &job, done);
+        let folder = cache::folder(self.job.options.reference_cache.as_deref());
+        let (estimate, origin) = cache::reference(folder.as_deref(), &self.job.scene, job, done);
         bar.finish_and_clear();
         if let Some(warning) = origin.warning() {
             note(warning);
@@ -281,6 +289,9 @@ impl Results<'_> {
             let [noise, rmse, most] = [noise, rmse, most].map(Option::unwrap_or_default);
             line("bias", format!("{:+.3} %{noise}{rmse}{most}", 100.0 * bias));
         }
+        if let (Some(picture), Some(reference)) = (error.standard_error, error.reference_standard_error) {
+            line("noise", noise(picture, reference, error));
+        }
         if let Some(tiles) = &error.tiles {
             let (failed, tested, bound) = (tiles.failed, tiles.tested, tiles.threshold_z);
             let worst = tiles
@@ -419,6 +430,26 @@ fn means(report: &Report) -> String {
         Some(reference) => format!("{image}; reference {reference}"),
         None => image,
     }
+}
+
+/// How much of the bias's standard error is whose.
+fn noise(picture: f64, reference: f64, error: &report::ErrorFigures) -> String {
+    let spp = error
+        .reference_spp
+        .map(|spp| format!(" at {spp} samples per pixel"));
+    let tile = error.reference_tile_noise_share.unwrap_or_default();
+    let most = effort::MOST_SHARE;
+    let too_much = if reference > most * picture || tile > most {
+        "; the reference's is more than a third of the picture's: give it more by --reference-spp"
+    } else {
+        ""
+    };
+    format!(
+        "of the mean {:.3} %, the reference's {:.3} %{}, of a tile {tile:.2} of the picture's{too_much}",
+        100.0 * picture,
+        100.0 * reference,
+        spp.unwrap_or_default(),
+    )
 }
 
 /// Radiance to five decimals, or to four digits where those would be noughts.

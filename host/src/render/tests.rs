@@ -202,3 +202,24 @@ fn results_of_an_earlier_render_go_when_there_are_new_ones_and_not_before() {
     render(&options(out.path(), &["--seed", "2"]), &RUNNING).expect("a picture");
     assert!(is_there("image.png") && !is_there("reference.exr") && !is_there("difference.png"));
 }
+
+/// Nobody has to say how many samples the reference needs, and its noise is never most of what a comparison sees.
+#[test]
+fn the_reference_takes_as_many_samples_as_leave_it_a_third_of_the_noise() {
+    let [out, cache] = [(); 2].map(|()| tempfile::tempdir().expect("a folder"));
+    for spp in ["16", "256"] {
+        let mut options = options(out.path(), &["--size", "32x24", "--spp", spp]);
+        options.picture.reference = None;
+        options.picture.reference_cache = Some(cache.path().to_owned());
+        let said = render(&options, &RUNNING).expect("a picture").summary;
+        let error = &report(out.path())["error"];
+        let figure = |key: &str| error[key].as_f64().unwrap_or_else(|| panic!("{key}: {error}"));
+        assert!(
+            figure("reference_standard_error") < figure("standard_error") / 3.0,
+            "{error}"
+        );
+        assert!(figure("reference_tile_noise_share") < 1.0 / 3.0, "{error}");
+        let reference_spp = format!("at {} samples per pixel", figure("reference_spp"));
+        assert!(said.contains("noise ") && said.contains(&reference_spp), "{said}");
+    }
+}

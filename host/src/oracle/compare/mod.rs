@@ -11,6 +11,7 @@
 //!
 //! A picture without a variance counts as exact. A pixel that is missing on either side is left out and counted.
 
+mod noise_share;
 mod pixels;
 #[cfg(test)]
 mod tests;
@@ -19,6 +20,8 @@ mod tiles;
 use statrs::distribution::{ChiSquared, ContinuousCDF, Normal};
 
 use crate::image::picture::{Estimate, displayed};
+pub use noise_share::NoiseShare;
+use noise_share::error_of_sum;
 pub use pixels::{PixelTest, Pixels};
 pub use tiles::{FALSE_ALARM, SIDE, Tile, Tiles};
 
@@ -29,6 +32,12 @@ pub struct Comparison {
     pub bias: Option<f64>,
     /// Upper bound of the standard error of `bias` (as if the channels' noise were one and the same).
     pub bias_standard_error: Option<f64>,
+    /// The picture's part of it, relative to the reference's mean as `bias` is: were the reference exact. `None` without a variance.
+    pub standard_error: Option<f64>,
+    /// The reference's part: were the picture exact.
+    pub reference_standard_error: Option<f64>,
+    /// How much of the noise is the reference's; `None` unless both sides' variance is known.
+    pub noise_share: Option<NoiseShare>,
     /// Standard error of `bias` by how much the pixels' differences differ among themselves. It needs no variance, and takes
     /// an error that is not the same everywhere for noise as well, so it is an upper bound, too.
     pub bias_spread: Option<f64>,
@@ -89,7 +98,7 @@ pub struct Uniformity {
 
 const BINS: usize = 20;
 /// Fewer samples leave the mean of a pixel too skewed for [`Uniformity`].
-const FEWEST_SAMPLES: u32 = 1024;
+pub(crate) const FEWEST_SAMPLES: u32 = 1024;
 /// The chi-squared test wants about five in each bin.
 const FEWEST_TESTED: usize = 5 * BINS;
 
@@ -157,10 +166,8 @@ pub fn compare(image: &Estimate, reference: &Estimate) -> Result<Comparison, Com
     let mean = sum(&|pair, channel| pair.image[channel]).map(|sum| sum / count);
     let reference_mean = sum(&|pair, channel| pair.reference[channel]).map(|sum| sum / count);
     let reference_level: f64 = reference_mean.iter().sum();
-    let error: f64 = sum(&|pair, channel| pair.variance[channel])
-        .map(|sum| sum.sqrt() / count)
-        .iter()
-        .sum();
+    let error = error_of_sum(present.iter().map(|pair| pair.variance)) / count;
+    let [image_error, reference_error] = [image, reference].map(|estimate| error_of_mean(estimate, &pixels));
     let relative = |value: f64| (reference_level > 0.0).then_some(value / reference_level);
     let squared_error = squared_error(&present);
     let noisy = image.variance.is_some() || reference.variance.is_some();
@@ -168,6 +175,9 @@ pub fn compare(image: &Estimate, reference: &Estimate) -> Result<Comparison, Com
     Ok(Comparison {
         bias: relative(mean.iter().sum::<f64>() - reference_level),
         bias_standard_error: relative(error).filter(|_| noisy),
+        standard_error: image_error.and_then(relative),
+        reference_standard_error: reference_error.and_then(relative),
+        noise_share: NoiseShare::of(reference, image),
         bias_spread: relative(spread_of_sum(&present)),
         mean,
         reference_mean,
@@ -181,6 +191,13 @@ pub fn compare(image: &Estimate, reference: &Estimate) -> Result<Comparison, Com
         compared: present.len(),
         missing: pixels.len() - present.len(),
     })
+}
+
+/// The most that the standard error of an estimate's mean over the `pixels` there are can be.
+fn error_of_mean(estimate: &Estimate, pixels: &[Option<Pair>]) -> Option<f64> {
+    let both = estimate.variance.as_ref()?.iter().zip(pixels);
+    let variances = both.filter_map(|(&variance, pair)| pair.map(|_| variance));
+    Some(error_of_sum(variances) / pixels.iter().flatten().count() as f64)
 }
 
 fn pairs(image: &Estimate, reference: &Estimate) -> Vec<Option<Pair>> {

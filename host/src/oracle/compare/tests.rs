@@ -314,3 +314,32 @@ fn thresholds_are_those_of_the_normal_table() {
     );
     assert!((two_sided_p(-1.96) - 0.05).abs() < 1e-4);
 }
+
+/// The parts of the standard error are those of either side, and the tiles' median is not moved by one bright tile.
+#[test]
+fn noise_is_told_apart_by_side() {
+    let flat = |variance: &dyn Fn(usize) -> f64| Estimate {
+        picture: Picture::new(24, 8, vec![Some([0.5; 3]); 192]),
+        variance: Some((0..192).map(|pixel| [variance(pixel % 24 / 8); 3]).collect()),
+        spp: Some(64),
+    };
+    let picture = flat(&|_| 9e-4);
+    let reference = flat(&|tile| if tile == 2 { 1.0 } else { 1e-4 });
+    let found = compare(&picture, &reference).unwrap();
+    let near = |value: f64, expected: f64| (value / expected - 1.0).abs() < 1e-12;
+    // Of a channel's sum over 192 pixels, 192 v; over three of 192 times 0.5 each.
+    let relative = |sum: f64| sum.sqrt() / (192.0 * 0.5);
+    assert!(near(found.standard_error.unwrap(), relative(192.0 * 9e-4)));
+    let both = 64.0 + 128.0 * 1e-4;
+    assert!(near(found.reference_standard_error.unwrap(), relative(both)));
+    let share = found.noise_share.unwrap();
+    assert!(near(share.tile, 1.0 / 3.0), "{share:?}");
+    assert!(near(share.mean, (both / (192.0 * 9e-4)).sqrt()), "{share:?}");
+    assert_eq!(share.largest(), share.mean);
+    let exact = Estimate {
+        variance: None,
+        ..reference
+    };
+    let found = compare(&picture, &exact).unwrap();
+    assert_eq!((found.reference_standard_error, found.noise_share), (None, None));
+}

@@ -10,6 +10,7 @@
 mod ball;
 pub mod cache;
 mod camera;
+pub mod effort;
 mod lights;
 mod path;
 mod sampling;
