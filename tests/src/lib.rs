@@ -14,8 +14,8 @@ use host::firmware::board::Board;
 use host::image::film::Film;
 use host::image::picture::Estimate;
 use host::oracle::direct;
-use host::oracle::lockstep::{Paired, paired};
-use host::oracle::reference::{self, Job};
+use host::oracle::lockstep::{self, Paired};
+use host::oracle::reference::{self, Job, Rendered};
 use host::platform::setup::{self, Install, Toolchain, Wanted};
 use host::platform::workspace;
 use host::scene::{Scene, compile};
@@ -76,19 +76,21 @@ pub fn film<P: Profile>(scene: &Scene, plan: &Plan) -> Film {
     direct::film::<P>(&compiled, plan)
 }
 
-/// `P`'s picture and its double's, sample by sample.
+/// `P`'s picture and its double's, sample by sample, with their noise.
 pub fn pair<P: Profile<Random: Clone>>(scene: &Scene, plan: &Plan) -> Paired {
-    paired::<P>(&compile(scene, plan.width, plan.height), plan)
+    lockstep::render::<P>(&compile(scene, plan.width, plan.height), plan, |_| ())
 }
 
-/// `P`'s picture, with the variance that the lockstep oracle measures on the same paths.
-pub fn estimate<P: Profile>(scene: &Scene, plan: &Plan) -> (Estimate, Estimate) {
-    let compiled = compile(scene, plan.width, plan.height);
-    direct::estimate::<P>(&compiled, plan)
+/// `P`'s picture as the film has it, with the noise of its samples.
+pub fn estimate<P: Profile<Random: Clone>>(scene: &Scene, plan: &Plan) -> Estimate {
+    Estimate {
+        picture: film::<P>(scene, plan).picture(),
+        ..pair::<P>(scene, plan).picture
+    }
 }
 
 /// The independent reference of `scene`, with roulette.
-pub fn reference(scene: &Scene, width: u16, height: u16, spp: u32) -> Estimate {
+pub fn reference(scene: &Scene, width: u16, height: u16, spp: u32) -> Rendered {
     let job = Job {
         width,
         height,

@@ -7,19 +7,20 @@
 use fixedmath::U48F16;
 use host::oracle::compare::{Comparison, compare};
 use host::oracle::direct;
+use host::oracle::lockstep::Paired;
 use host::scene::{Scene, compile};
 use tracer::camera::Camera;
 use tracer::integrator::{Integrator, Path};
 use tracer::profile::Precise;
 use tracer::scene::{All, Capability};
 use tracer::unit::{Plan, SPAN, render};
-use whole_system::{estimate, film, plan, reference, repository};
+use whole_system::{estimate, film, pair, plan, reference, repository};
 use wire::SUM_MAX;
 
 fn compared(scene: &Scene, width: u16, height: u16, spp: u32) -> Comparison {
     let reference = reference(scene, width, height, spp);
-    let (precise, _) = estimate::<Precise>(scene, &plan::<Precise>(width, height, spp));
-    compare(&precise, &reference).unwrap()
+    let precise = estimate::<Precise>(scene, &plan::<Precise>(width, height, spp));
+    compare(&reference.pooled_noise(precise), &reference.estimate).unwrap()
 }
 
 fn no_tile_is_off(name: &str, found: &Comparison) {
@@ -48,8 +49,8 @@ fn balls_that_rays_start_in() {
     // One-sided, the balls that are cut are not seen: the test can fail.
     let mut blind = scene.clone();
     blind.spheres.retain(|sphere| sphere.name != "black");
-    let (seen, _) = estimate::<Precise>(&scene, &plan::<Precise>(64, 48, 16));
-    let (unseen, _) = estimate::<Precise>(&blind, &plan::<Precise>(64, 48, 16));
+    let seen = estimate::<Precise>(&scene, &plan::<Precise>(64, 48, 16));
+    let unseen = estimate::<Precise>(&blind, &plan::<Precise>(64, 48, 16));
     assert!(compare(&unseen, &seen).unwrap().tiles.failed().count() > 0);
 }
 
@@ -104,8 +105,8 @@ fn glass_balls_of_any_radius() {
         );
         let scene = Scene::parse("ring.toml", &text).unwrap();
         no_tile_is_off(&format!("sky {sky}"), &compared(&scene, 64, 64, 64));
-        let (fixed, exact) = estimate::<Precise>(&scene, &plan::<Precise>(64, 64, 64));
-        let [fixed, exact] = [fixed, exact].map(|it| it.picture.mean().unwrap()[0]);
+        let Paired { picture, double, .. } = pair::<Precise>(&scene, &plan::<Precise>(64, 64, 64));
+        let [fixed, exact] = [picture, double].map(|it| it.picture.mean().unwrap()[0]);
         // Five of the 262,144 paths may be black on one side only, by chance: roulette ends one in a thousand of those that
         // rounding has parted. Of a ball of 0.1 for a core, forty were.
         assert!(
@@ -151,8 +152,8 @@ fn lengths_have_no_unit() {
             );
         }
         for factor in [0.3048, 1000.0 / 3.0] {
-            let (scaled, _) = estimate::<Precise>(&times(scene.clone(), factor), &plan);
-            let (original, _) = estimate::<Precise>(&scene, &Plan { seed: 2, ..plan });
+            let scaled = estimate::<Precise>(&times(scene.clone(), factor), &plan);
+            let original = estimate::<Precise>(&scene, &Plan { seed: 2, ..plan });
             let found = compare(&scaled, &original).unwrap();
             no_tile_is_off(&format!("{path} times {factor}"), &found);
         }

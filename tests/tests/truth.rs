@@ -10,6 +10,7 @@ use host::bench::generators::low_bits::PreciseByLowBits;
 use host::image::picture::{Estimate, Picture};
 use host::oracle::compare::{Comparison, SIDE, compare};
 use host::oracle::lockstep::Paired;
+use host::oracle::reference::Rendered;
 use host::scene::{Material, Scene};
 use tracer::profile::{Paper, Precise, Profile};
 use tracer::unit::Plan;
@@ -39,8 +40,8 @@ fn show(name: &str, found: &Comparison) {
 }
 
 /// A small picture of little noise, for the tests that look at tiles.
-fn small_reference() -> &'static Estimate {
-    static REFERENCE: OnceLock<Estimate> = OnceLock::new();
+fn small_reference() -> &'static Rendered {
+    static REFERENCE: OnceLock<Rendered> = OnceLock::new();
     REFERENCE.get_or_init(|| reference(&cornell(), 64, 48, 1024))
 }
 
@@ -59,11 +60,20 @@ fn small_picture() -> &'static Picture {
     PICTURE.get_or_init(|| film::<Precise>(&cornell(), &plan::<Precise>(64, 48, SPP)).picture())
 }
 
+/// A picture that has the small picture's noise.
+fn with_noise(picture: Picture) -> Estimate {
+    small_reference().pooled_noise(Estimate {
+        picture,
+        ..small_pair().picture.clone()
+    })
+}
+
 /// What a wide picture shows, tracer and reference work out each for itself.
 #[test]
 fn a_wide_picture_is_the_reference_s() {
-    let (precise, _) = estimate::<Precise>(&cornell(), &plan::<Precise>(64, 36, 256));
-    let found = compare(&precise, &reference(&cornell(), 64, 36, 256)).unwrap();
+    let precise = estimate::<Precise>(&cornell(), &plan::<Precise>(64, 36, 256));
+    let reference = reference(&cornell(), 64, 36, 256);
+    let found = compare(&reference.pooled_noise(precise), &reference.estimate).unwrap();
     show("precise, 16:9", &found);
     assert_eq!(found.tiles.failed().count(), 0);
 }
@@ -72,7 +82,13 @@ fn a_wide_picture_is_the_reference_s() {
 /// has a quarter of them, and an eighth of their variance for each.
 #[test]
 fn precise_is_as_bright_as_double_precision() {
-    let reference = grey(reference(&cornell(), 256, 192, 128).picture.mean().unwrap());
+    let reference = grey(
+        reference(&cornell(), 256, 192, 128)
+            .estimate
+            .picture
+            .mean()
+            .unwrap(),
+    );
     assert!(
         (reference - 0.3131).abs() < 0.001,
         "the reference itself: {reference}"
@@ -89,11 +105,9 @@ fn precise_is_as_bright_as_double_precision() {
 
 #[test]
 fn no_tile_of_precise_is_further_off_than_chance_allows() {
-    let precise = Estimate {
-        picture: small_picture().clone(),
-        ..small_pair().picture.clone()
-    };
-    let found = compare(&precise, small_reference()).unwrap();
+    let reference = small_reference();
+    let precise = with_noise(small_picture().clone());
+    let found = compare(&precise, &reference.estimate).unwrap();
     show("precise", &found);
     assert_eq!(found.tiles.failed().count(), 0);
 }
@@ -104,8 +118,8 @@ fn no_tile_is_off_in_scenes_of_other_kinds() {
     for (name, spp) in [("open", 128), ("tiny", 512), ("mirrors", 1024)] {
         let scene = Scene::load(&repository(&format!("tests/scenes/{name}.toml"))).unwrap();
         let reference = reference(&scene, 64, 48, spp);
-        let (precise, _) = estimate::<Precise>(&scene, &plan::<Precise>(64, 48, 1024));
-        let found = compare(&precise, &reference).unwrap();
+        let precise = estimate::<Precise>(&scene, &plan::<Precise>(64, 48, SPP));
+        let found = compare(&reference.pooled_noise(precise), &reference.estimate).unwrap();
         show(name, &found);
         assert_eq!(found.tiles.failed().count(), 0, "{name}");
     }
@@ -121,8 +135,9 @@ fn tiles_see_a_glass_ball_of_the_wrong_index() {
             *index = 1.3;
         }
     }
-    let wrong = pair::<Precise>(&wrong, &plan::<Precise>(64, 48, 4096));
-    let found = compare(&wrong.picture, small_reference()).unwrap();
+    let wrong = estimate::<Precise>(&wrong, &plan::<Precise>(64, 48, 4096));
+    let reference = small_reference();
+    let found = compare(&reference.pooled_noise(wrong), &reference.estimate).unwrap();
     show("index 1.3", &found);
     assert!(found.bias.unwrap().abs() < 0.01, "the mean alone would not tell");
     assert!(found.tiles.failed().count() > 0);
@@ -152,7 +167,9 @@ fn precise_is_its_double_within_a_quarter_of_a_level() {
 /// Float against float, which share no formula: nothing but noise is between them.
 #[test]
 fn the_double_is_the_reference_but_for_noise() {
-    let found = explained_by_noise("double", &small_pair().double, small_reference());
+    let reference = small_reference();
+    let double = reference.pooled_noise(small_pair().double.clone());
+    let found = explained_by_noise("double", &double, &reference.estimate);
     let found = found.unwrap_or_else(|error| panic!("{error}"));
     let (pixels, uniformity) = (found.pixels.expect("tested"), found.uniformity.expect("tested"));
     println!(
@@ -225,20 +242,13 @@ fn planted_faults_are_not_equivalent() {
 /// Proof that the tests of noise can fail: a picture one pixel aside, and random numbers that repeat.
 #[test]
 fn planted_faults_are_not_noise() {
-    let double = &small_pair().double;
-    let shifted = Estimate {
-        picture: changed(&double.picture, |x, y, at| at(x.saturating_sub(1), y)),
-        ..double.clone()
-    };
-    let low_bits = Estimate {
-        picture: film::<PreciseByLowBits>(&cornell(), &plan::<Precise>(64, 48, SPP)).picture(),
-        ..small_pair().picture.clone()
-    };
-    for (name, fault) in [
-        ("planted/shifted noise", &shifted),
-        ("planted/low bits", &low_bits),
-    ] {
-        let said = explained_by_noise(name, fault, small_reference()).expect_err("a fault is planted");
+    let reference = small_reference();
+    let double = &small_pair().double.picture;
+    let shifted = changed(double, |x, y, at| at(x.saturating_sub(1), y));
+    let low_bits = film::<PreciseByLowBits>(&cornell(), &plan::<Precise>(64, 48, SPP)).picture();
+    for (name, fault) in [("planted/shifted noise", shifted), ("planted/low bits", low_bits)] {
+        let fault = with_noise(fault);
+        let said = explained_by_noise(name, &fault, &reference.estimate).expect_err("a fault is planted");
         println!("{said}");
     }
 }

@@ -89,11 +89,11 @@ fn draw(path: &Path) -> anyhow::Result<Effect> {
         termination: reference::Termination::Roulette,
         seed: 0x5eed,
     };
-    let (reference, origin) = cache::reference(cache::folder(None).as_deref(), &scene, &job, |_| ());
+    let (rendered, origin) = cache::reference(cache::folder(None).as_deref(), &scene, &job, |_| ());
     if let Some(warning) = origin.warning() {
         note(warning);
     }
-    let pictures = Pictures::render(&scene, 1024, reference);
+    let pictures = Pictures::render(&scene, 1024, rendered.estimate);
     pictures.write(path)?;
     let effect = pictures.effect()?;
     for (bits, figures) in [

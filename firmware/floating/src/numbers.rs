@@ -237,10 +237,6 @@ impl<F: Float> VastNumbers for Floating<F> {
         (steepness > F::ZERO).then(|| (height + height) / steepness)
     }
 
-    fn comes_up(bend: Bend, height: F, slope: F, root: F, t_max: F) -> Option<F> {
-        Self::goes_under(bend.turned(), -height, -slope, root, t_max)
-    }
-
     fn upward(normal: [I2F30; 3], bend: Bend, above: [F; 3]) -> [F; 3] {
         let curvature = curvature::<F>(bend);
         Self::renormalised([0, 1, 2].map(|i| Self::unit(normal[i]) - above[i] * curvature))

@@ -118,7 +118,7 @@ fn what_is_met_is_on_the_surface() {
             ),
             (
                 height <= 0,
-                Mixed::comes_up(case.bend, height, slope, root, Mixed::FAR),
+                Mixed::goes_under(case.bend.turned(), -height, -slope, root, Mixed::FAR),
             ),
         ];
         for t in hits

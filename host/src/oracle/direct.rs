@@ -10,9 +10,6 @@ use tracer::unit::{Plan, SPAN, Sums, render};
 use wire::PixelSums;
 
 use crate::image::film::Film;
-use crate::image::picture::Estimate;
-use crate::oracle::lockstep;
-use crate::oracle::noise;
 use crate::scene::CompiledScene;
 
 /// The film that any fleet must end with.
@@ -41,19 +38,4 @@ pub fn film<P: Profile>(compiled: &CompiledScene, plan: &Plan) -> Film {
             .expect("units lie within the film");
     }
     film
-}
-
-/// The film's picture with the variance of its samples, and the lockstep oracle's.
-///
-/// # Panics
-/// If the plan has more units than there are ids.
-pub fn estimate<P: Profile>(compiled: &CompiledScene, plan: &Plan) -> (Estimate, Estimate) {
-    let lockstep = lockstep::render::<P>(compiled, plan, |_| ());
-    let picture = film::<P>(compiled, plan).picture();
-    let fixed = Estimate {
-        variance: noise::variance::<P>(compiled, plan, &picture, &lockstep, |_| ()),
-        picture,
-        spp: lockstep.spp,
-    };
-    (fixed, lockstep)
 }

@@ -11,6 +11,7 @@ use crate::firmware::board::Board;
 use crate::firmware::{self, ImageSize};
 use crate::image::picture::{Estimate, Picture};
 use crate::oracle::compare::{CompareError, Comparison, Tiles, compare};
+use crate::oracle::lockstep::Paired;
 use crate::platform::file::{WriteError, write_whole};
 
 /// The whole report.
@@ -182,7 +183,7 @@ pub struct TileTest {
 pub struct LockstepError {
     /// As in [`ErrorFigures::bias`].
     pub bias: Option<f64>,
-    /// Upper bound of the standard error of `bias`: paths that rounding sends another way are noise.
+    /// Upper bound of the standard error of `bias`: paths that rounding sends another way are noise, and no others.
     pub bias_standard_error: Option<f64>,
     /// Root of the mean squared difference; with the same random numbers there is little noise to correct for.
     pub rmse: f64,
@@ -243,20 +244,24 @@ impl ErrorFigures {
 }
 
 impl LockstepError {
-    /// How far `picture` is from `lockstep`, the same samples in exact arithmetic.
-    pub fn between(picture: &Picture, lockstep: &Picture) -> Result<Self, CompareError> {
-        // Both are taken as exact: their noise is the same and cancels.
-        let exact = |picture: &Picture| Estimate {
+    /// How far `picture` is from its double.
+    pub fn between(picture: &Picture, paired: &Paired) -> Result<Self, CompareError> {
+        let image = |variance| Estimate {
             picture: picture.clone(),
-            variance: None,
+            variance,
             spp: None,
         };
-        let comparison = compare(&exact(picture), &exact(lockstep))?;
+        let double = Estimate {
+            variance: None,
+            ..paired.double.clone()
+        };
+        let plain = compare(&image(None), &double)?;
+        let noisy = compare(&image(Some(paired.variance.clone())), &double)?;
         Ok(Self {
-            bias: comparison.bias,
-            bias_standard_error: comparison.bias_spread,
-            rmse: comparison.rmse,
-            max_abs: comparison.max_abs,
+            bias: plain.bias,
+            bias_standard_error: noisy.bias_standard_error,
+            rmse: plain.rmse,
+            max_abs: plain.max_abs,
         })
     }
 }
@@ -405,14 +410,23 @@ mod tests {
 
     #[test]
     fn lockstep_errors_are_plain_differences() {
-        let picture = Picture::new(2, 1, vec![Some([0.5, 0.5, 0.5]), Some([1.0, 1.0, 1.3])]);
-        let lockstep = Picture::new(2, 1, vec![Some([0.5, 0.5, 0.5]), Some([1.0, 1.0, 1.0])]);
-        let error = LockstepError::between(&picture, &lockstep).unwrap();
+        let exact = |pixels| Estimate {
+            picture: Picture::new(2, 1, pixels),
+            variance: None,
+            spp: Some(4),
+        };
+        let picture = exact(vec![Some([0.5, 0.5, 0.5]), Some([1.0, 1.0, 1.3])]);
+        let paired = Paired {
+            picture: picture.clone(),
+            double: exact(vec![Some([0.5, 0.5, 0.5]), Some([1.0, 1.0, 1.0])]),
+            variance: vec![[0.0; 3], [0.0, 0.0, 0.09]],
+        };
+        let error = LockstepError::between(&picture.picture, &paired).unwrap();
         assert!((error.max_abs - 0.3).abs() < 1e-12);
         assert!((error.rmse - (0.09f64 / 6.0).sqrt()).abs() < 1e-12);
         assert!((error.bias.unwrap() - 0.3 / 4.5).abs() < 1e-12);
-        // The pixels' sums differ by 0 and 0.3: a mean of 0.15 with a standard error of 0.15, of 2.25.
-        assert!((error.bias_standard_error.unwrap() - 0.15 / 2.25).abs() < 1e-12);
+        // The only sum that is uncertain is 4.5, by 0.3.
+        assert!((error.bias_standard_error.unwrap() - 0.3 / 4.5).abs() < 1e-12);
     }
 
     #[test]

@@ -20,9 +20,8 @@ use crate::image::openexr;
 use crate::image::picture::Estimate;
 use crate::oracle::compare::{Comparison, compare};
 use crate::oracle::difference;
-use crate::oracle::lockstep;
-use crate::oracle::noise;
-use crate::oracle::reference::{self, cache, effort};
+use crate::oracle::lockstep::{self, Paired};
+use crate::oracle::reference::{self, Rendered, cache, effort};
 use crate::platform::console::note;
 use crate::platform::file::WriteError;
 use crate::render::report::{self, Cost, LockstepError, Report};
@@ -65,12 +64,15 @@ impl Results<'_> {
             return Ok(None);
         }
         let oracle = self.oracle();
-        let image = self.image(oracle.as_ref().and_then(|oracle| self.variance(oracle)));
-        let reference = match &self.job.reference {
-            Some(given) => given.clone(),
-            None => self.computed_reference(&image),
+        let own = self.image(oracle.as_ref().and_then(|oracle| oracle.picture.variance.clone()));
+        let (image, reference) = match &self.job.reference {
+            Some(given) => (own, given.clone()),
+            None => {
+                let rendered = self.computed_reference(&own);
+                (rendered.pooled_noise(own), rendered.estimate)
+            }
         };
-        let lockstep = oracle.map(|oracle| LockstepError::between(&image.picture, &oracle.picture));
+        let lockstep = oracle.map(|oracle| LockstepError::between(&image.picture, &oracle));
         let comparison = compare(&image, &reference)?;
         Ok(Some(Verdict {
             image,
@@ -80,7 +82,7 @@ impl Results<'_> {
     }
 
     /// The reference for `image`: with as many samples as were asked for, else as many as it takes.
-    fn computed_reference(&self, image: &Estimate) -> Estimate {
+    fn computed_reference(&self, image: &Estimate) -> Rendered {
         let options = &self.job.options;
         let termination = match options.termination.0 {
             Termination::Roulette => reference::Termination::Roulette,
@@ -101,21 +103,22 @@ impl Results<'_> {
         }
     }
 
-    fn rendered_reference(&self, job: &reference::Job) -> Estimate {
+    fn rendered_reference(&self, job: &reference::Job) -> Rendered {
         note(format!("double precision at {} samples per pixel", job.spp));
         let bar = bar("reference", job.samples());
         let done = |samples| bar.set_position(samples);
         let folder = cache::folder(self.job.options.reference_cache.as_deref());
-        let (estimate, origin) = cache::reference(folder.as_deref(), &self.job.scene, job, done);
+        let (rendered, origin) = cache::reference(folder.as_deref(), &self.job.scene, job, done);
         bar.finish_and_clear();
         if let Some(warning) = origin.warning() {
             note(warning);
         }
-        estimate
+        rendered
     }
 
-    /// The same samples in exact arithmetic. Not for the stochastic order, whose samples are others each time.
-    fn oracle(&self) -> Option<Estimate> {
+    /// The same samples once more, and in exact arithmetic. Free-running orders take the same units; not so the stochastic one,
+    /// whose samples are others each time.
+    fn oracle(&self) -> Option<Paired> {
         let options = &self.job.options;
         if options.pixels == Pixels::Stochastic {
             return None;
@@ -129,20 +132,6 @@ impl Results<'_> {
         };
         bar.finish_and_clear();
         Some(rendered)
-    }
-
-    /// The variance of the collected picture's pixels.
-    fn variance(&self, oracle: &Estimate) -> Option<Vec<[f64; 3]>> {
-        let (compiled, plan) = (&self.job.compiled, &self.job.plan);
-        let picture = self.collection.film.picture();
-        let bar = bar("noise", self.collection.film.samples());
-        let done = |samples| bar.inc(samples);
-        let found = match self.job.options.profile {
-            Arithmetic::Paper => noise::variance::<Paper>(compiled, plan, &picture, oracle, done),
-            Arithmetic::Precise => noise::variance::<Precise>(compiled, plan, &picture, oracle, done),
-        };
-        bar.finish_and_clear();
-        found
     }
 
     /// Writes pictures and report into the folder for them. Elsewhere, they are kept but it is an error.

@@ -16,7 +16,7 @@ use crate::image::picture::{Estimate, Picture};
 use crate::image::raster::Raster;
 use crate::oracle::compare::{CompareError, Comparison, compare};
 use crate::oracle::difference::differences;
-use crate::oracle::direct;
+use crate::oracle::lockstep;
 use crate::platform::file::WriteError;
 use crate::scene::{Scene, compile};
 
@@ -96,8 +96,8 @@ impl Pictures {
         };
         let compiled = compile(scene, width, height);
         Self {
-            full_state: direct::estimate::<Precise>(&compiled, &plan).0,
-            low_bits: direct::estimate::<PreciseByLowBits>(&compiled, &plan).0,
+            full_state: lockstep::render::<Precise>(&compiled, &plan, |_| ()).picture,
+            low_bits: lockstep::render::<PreciseByLowBits>(&compiled, &plan, |_| ()).picture,
             reference,
         }
     }
@@ -267,7 +267,7 @@ mod tests {
             termination: reference::Termination::Roulette,
             seed: 1,
         };
-        let reference = reference::render(&scene, &job, |_| ());
+        let reference = reference::render(&scene, &job, |_| ()).estimate;
         Pictures::render(&scene, spp, reference)
     }
 

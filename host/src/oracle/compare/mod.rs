@@ -38,9 +38,6 @@ pub struct Comparison {
     pub reference_standard_error: Option<f64>,
     /// How much of the noise is the reference's; `None` unless both sides' variance is known.
     pub noise_share: Option<NoiseShare>,
-    /// Standard error of `bias` by how much the pixels' differences differ among themselves. It needs no variance, and takes
-    /// an error that is not the same everywhere for noise as well, so it is an upper bound, too.
-    pub bias_spread: Option<f64>,
     /// Mean radiance of the picture.
     pub mean: [f64; 3],
     /// Mean radiance of the reference over the same pixels.
@@ -178,7 +175,6 @@ pub fn compare(image: &Estimate, reference: &Estimate) -> Result<Comparison, Com
         standard_error: image_error.and_then(relative),
         reference_standard_error: reference_error.and_then(relative),
         noise_share: NoiseShare::of(reference, image),
-        bias_spread: relative(spread_of_sum(&present)),
         mean,
         reference_mean,
         rmse: squared_error.corrected.max(0.0).sqrt(),
@@ -216,13 +212,6 @@ fn pairs(image: &Estimate, reference: &Estimate) -> Vec<Option<Pair>> {
             })
         })
         .collect()
-}
-
-/// The standard error of the channels' summed mean difference.
-fn spread_of_sum(pixels: &[Pair]) -> f64 {
-    standard_error(pixels, |pair| {
-        (0..3).map(|channel| pair.difference(channel)).sum()
-    })
 }
 
 /// The standard error of the mean of `value`. The channels of a pixel share its paths, pixels share nothing: the spread is

@@ -10,17 +10,16 @@ use std::path::{Path, PathBuf};
 use etcetera::base_strategy::{BaseStrategy, Xdg};
 use sha2::{Digest, Sha256};
 
-use super::{Job, render};
-use crate::image::picture::{Estimate, Picture};
+use super::{Job, Pixel, Rendered, of_pixels, render};
 use crate::platform::file::{OUR_FOLDER, write_whole};
 use crate::scene::Scene;
 
 /// To be raised when the reference's method changes: old files are then no longer found.
-const METHOD: u32 = 2;
-const MAGIC: &[u8; 8] = b"reffilm1";
+const METHOD: u32 = 3;
+const MAGIC: &[u8; 8] = b"reffilm2";
 const CHECKSUM: usize = 32;
-/// Mean and variance of three channels.
-const PIXEL: usize = 6 * size_of::<f64>();
+/// Mean, its variance, and the variance of a plain sample, of three channels.
+const PIXEL: usize = 9 * size_of::<f64>();
 
 /// Where a reference came from.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -60,30 +59,30 @@ pub fn reference(
     scene: &Scene,
     job: &Job,
     progress: impl Fn(u64) + Sync,
-) -> (Estimate, Origin) {
+) -> (Rendered, Origin) {
     let path = cache.map(|cache| place(cache, scene, job));
     // Whatever keeps it from being read will keep it from being written, and is reported then.
     let kept = path.as_deref().and_then(|path| fs::read(path).ok());
     let mut origin = Origin::Rendered;
     if let Some(bytes) = kept {
         match decode(&bytes, job) {
-            Some(estimate) => return (estimate, Origin::Cached),
+            Some(rendered) => return (rendered, Origin::Cached),
             None => origin = Origin::Replaced,
         }
     }
-    let estimate = render(scene, job, progress);
+    let rendered = render(scene, job, progress);
     let home = || "you have no home folder".to_owned();
-    let stored = path.ok_or_else(home).and_then(|path| store(&path, &estimate));
-    (estimate, stored.map_or_else(Origin::NotKept, |()| origin))
+    let stored = path.ok_or_else(home).and_then(|path| store(&path, &rendered));
+    (rendered, stored.map_or_else(Origin::NotKept, |()| origin))
 }
 
 /// Puts a reference where the next render looks for it, or says why not.
-fn store(path: &Path, estimate: &Estimate) -> Result<(), String> {
+fn store(path: &Path, rendered: &Rendered) -> Result<(), String> {
     if let Some(folder) = path.parent() {
         let failed = |cause| format!("cannot make the folder {}: {cause}", folder.display());
         fs::create_dir_all(folder).map_err(failed)?;
     }
-    let bytes = encode(estimate);
+    let bytes = encode(rendered);
     let written = write_whole(path, |writer| writer.write_all(&bytes));
     written.map_err(|error| format!("cannot write {}: {}", error.path.display(), error.cause))
 }
@@ -97,11 +96,16 @@ fn place(cache: &Path, scene: &Scene, job: &Job) -> PathBuf {
     cache.join(format!("{}-{name}.reference", scene.name))
 }
 
-fn encode(estimate: &Estimate) -> Vec<u8> {
+fn encode(rendered: &Rendered) -> Vec<u8> {
     let mut bytes = MAGIC.to_vec();
+    let Rendered {
+        estimate,
+        plain_variance,
+    } = rendered;
     let pixels = estimate.picture.pixels().iter().flatten();
-    for (mean, variance) in pixels.zip(estimate.variance.iter().flatten()) {
-        for value in mean.iter().chain(variance) {
+    let variances = estimate.variance.iter().flatten().zip(plain_variance);
+    for (mean, (variance, plain)) in pixels.zip(variances) {
+        for value in mean.iter().chain(variance).chain(plain) {
             bytes.extend(value.to_le_bytes());
         }
     }
@@ -111,7 +115,7 @@ fn encode(estimate: &Estimate) -> Vec<u8> {
 }
 
 /// `None` for anything but a whole file of this job's size.
-fn decode(bytes: &[u8], job: &Job) -> Option<Estimate> {
+fn decode(bytes: &[u8], job: &Job) -> Option<Rendered> {
     let (body, checksum) = bytes.split_last_chunk::<CHECKSUM>()?;
     if Sha256::digest(body)[..] != checksum[..] {
         return None;
@@ -123,16 +127,16 @@ fn decode(bytes: &[u8], job: &Job) -> Option<Estimate> {
     let (values, _) = values.as_chunks::<8>();
     let values: Vec<f64> = values.iter().map(|bytes| f64::from_le_bytes(*bytes)).collect();
     let (triples, _) = values.as_chunks::<3>();
-    let (pixels, _) = triples.as_chunks::<2>();
-    let (means, variances) = pixels
+    let (pixels, _) = triples.as_chunks::<3>();
+    let pixels: Vec<Pixel> = pixels
         .iter()
-        .map(|[mean, variance]| (Some(*mean), *variance))
-        .unzip();
-    Some(Estimate {
-        picture: Picture::new(job.width, job.height, means),
-        variance: Some(variances),
-        spp: Some(job.spp),
-    })
+        .map(|&[mean, variance, plain_variance]| Pixel {
+            mean,
+            variance,
+            plain_variance,
+        })
+        .collect();
+    Some(of_pixels(&pixels, job))
 }
 
 #[cfg(test)]

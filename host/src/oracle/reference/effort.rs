@@ -4,7 +4,7 @@
 //! less than 6 % to the noise of their difference. How noisy the reference is, pilots say, whose samples are not used again: an
 //! estimate that decided by itself when it is good enough would end where its bright, rare paths happen to be missing.
 
-use super::{Job, Termination};
+use super::{Job, Rendered, Termination};
 use crate::image::picture::Estimate;
 use crate::oracle::compare::{FEWEST_SAMPLES, NoiseShare};
 
@@ -28,8 +28,8 @@ pub fn reference_for(
     picture: &Estimate,
     termination: Termination,
     seed: u64,
-    render: impl Fn(&Job) -> Estimate,
-) -> Estimate {
+    render: impl Fn(&Job) -> Rendered,
+) -> Rendered {
     let (width, height) = picture.picture.size();
     let job = |spp: u32, seed: u64| Job {
         width,
@@ -41,7 +41,7 @@ pub fn reference_for(
     let mut spp = PILOT;
     for pilot in 1..=2 {
         let found = render(&job(spp, seed.wrapping_add(pilot)));
-        let wanted = enough(&found, spp, picture);
+        let wanted = enough(&found.estimate, spp, picture);
         // A pilot that is a sixteenth of what is wanted has seen enough of it.
         if pilot == 2 || wanted <= 16 * spp {
             spp = wanted;
@@ -104,9 +104,12 @@ mod tests {
         let jobs = RefCell::new(Vec::new());
         let found = reference_for(picture, Termination::Roulette, 7, |job| {
             jobs.borrow_mut().push(*job);
-            flat(variance, job.spp)
+            Rendered {
+                estimate: flat(variance, job.spp),
+                plain_variance: Vec::new(),
+            }
         });
-        (jobs.into_inner(), found)
+        (jobs.into_inner(), found.estimate)
     }
 
     #[test]

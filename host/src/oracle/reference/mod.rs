@@ -23,6 +23,7 @@ use rand_xoshiro::rand_core::SeedableRng;
 use rayon::prelude::*;
 
 use sampling::Batch;
+use vector::Vector;
 
 use crate::image::picture::{Estimate, Picture};
 use crate::scene::Scene;
@@ -58,13 +59,44 @@ impl Job {
     }
 }
 
+/// What is known of a picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rendered {
+    /// The picture, and how uncertain it is.
+    pub estimate: Estimate,
+    /// Variance of one sample of a *plain* path tracer, that meets light and does not look for it: what noise a picture by the cores' paths
+    /// has if nothing is wrong with it.
+    pub plain_variance: Vec<[f64; 3]>,
+}
+
+impl Rendered {
+    /// `picture` by plain paths with a better estimate of its noise, if it has one: its own samples' and the reference's together.
+    ///
+    /// A picture whose few samples have met with nothing rare and bright takes itself for exact, and its darkness for an error.
+    #[must_use]
+    pub fn pooled_noise(&self, picture: Estimate) -> Estimate {
+        let (Some(own), Some(samples), Some(others)) = (&picture.variance, picture.spp, self.estimate.spp)
+        else {
+            return picture;
+        };
+        let (samples, others) = (f64::from(samples), f64::from(others));
+        let pooled = own.iter().zip(&self.plain_variance).map(|(own, plain)| {
+            [0, 1, 2].map(|c| (samples * own[c] + others * plain[c] / samples) / (samples + others))
+        });
+        Estimate {
+            variance: Some(pooled.collect()),
+            ..picture
+        }
+    }
+}
+
 /// Renders `scene`; `progress` hears how many samples are done, from any thread, once for every row.
 ///
 /// The estimate always has a variance. With 4 samples per pixel it is that of the four sub-pixels taken together.
 ///
 /// # Panics
 /// If `job.spp` is not a multiple of 4 above zero.
-pub fn render(scene: &Scene, job: &Job, progress: impl Fn(u64) + Sync) -> Estimate {
+pub fn render(scene: &Scene, job: &Job, progress: impl Fn(u64) + Sync) -> Rendered {
     assert!(
         job.spp > 0 && job.spp.is_multiple_of(4),
         "{} samples per pixel: must be a multiple of 4",
@@ -86,7 +118,7 @@ fn render_world(
     scene: &Scene,
     job: &Job,
     progress: impl Fn(u64) + Sync,
-) -> Estimate {
+) -> Rendered {
     let view = camera::View::new(&scene.camera, job.width, job.height);
     let done = AtomicU64::new(0);
     let mut stream = Xoshiro256PlusPlus::seed_from_u64(job.seed);
@@ -97,7 +129,7 @@ fn render_world(
             row
         })
         .collect();
-    let pixels: Vec<([f64; 3], [f64; 3])> = (0..job.height)
+    let pixels: Vec<Pixel> = (0..job.height)
         .into_par_iter()
         .zip(streams)
         .flat_map_iter(|(row, mut random)| {
@@ -109,18 +141,31 @@ fn render_world(
             pixels
         })
         .collect();
-    let (means, variances) = pixels
-        .into_iter()
-        .map(|(mean, variance)| (Some(mean), variance))
-        .unzip();
-    Estimate {
-        picture: Picture::new(job.width, job.height, means),
-        variance: Some(variances),
-        spp: Some(job.spp),
+    of_pixels(&pixels, job)
+}
+
+fn of_pixels(pixels: &[Pixel], job: &Job) -> Rendered {
+    let means = pixels.iter().map(|pixel| Some(pixel.mean)).collect();
+    Rendered {
+        estimate: Estimate {
+            picture: Picture::new(job.width, job.height, means),
+            variance: Some(pixels.iter().map(|pixel| pixel.variance).collect()),
+            spp: Some(job.spp),
+        },
+        plain_variance: pixels.iter().map(|pixel| pixel.plain_variance).collect(),
     }
 }
 
-/// Mean and variance of the mean of one pixel.
+/// One pixel's figures.
+#[derive(Clone, Copy)]
+struct Pixel {
+    mean: [f64; 3],
+    /// Of the mean.
+    variance: [f64; 3],
+    /// Of one plain sample.
+    plain_variance: [f64; 3],
+}
+
 fn pixel(
     world: &path::World,
     view: &camera::View,
@@ -128,19 +173,22 @@ fn pixel(
     place: [u16; 2],
     job: &Job,
     random: &mut Xoshiro256PlusPlus,
-) -> ([f64; 3], [f64; 3]) {
+) -> Pixel {
     let batches = job.spp / 4 / (side * side) as u32;
     let mut strata = [Moments::default(); 4];
-    for (moments, sub_pixel) in strata.iter_mut().zip([[0, 0], [1, 0], [0, 1], [1, 1]]) {
+    let mut plain_squares = [Vector::of([0.0; 3]); 4];
+    let sub_pixels = [[0, 0], [1, 0], [0, 1], [1, 1]];
+    for ((moments, squares), sub_pixel) in strata.iter_mut().zip(&mut plain_squares).zip(sub_pixels) {
         for _ in 0..batches {
             let batch = Batch::new(side, random);
-            let mut sum = [0.0; 3];
+            let mut sum = Vector::of([0.0; 3]);
             for sample in 0..batch.size() {
                 let mut draws = batch.draws(sample, random);
-                let radiance = world.sample(view, place, sub_pixel, job.termination, &mut draws);
-                sum = [0, 1, 2].map(|channel| sum[channel] + radiance[channel]);
+                let found = world.sample(view, place, sub_pixel, job.termination, &mut draws);
+                sum = sum + found.radiance;
+                *squares = *squares + found.plain_square;
             }
-            moments.add(sum.map(|sum| sum / batch.size() as f64));
+            moments.add((sum * (1.0 / batch.size() as f64)).components());
         }
     }
     let mean = [0, 1, 2].map(|channel| strata.iter().map(|stratum| stratum.mean[channel]).sum::<f64>() / 4.0);
@@ -158,7 +206,19 @@ fn pixel(
         strata.iter().for_each(|stratum| all.add(stratum.mean));
         [0, 1, 2].map(|channel| all.variance_of_mean(channel))
     };
-    (mean, variance)
+    let a_sub_pixel = 4.0 / f64::from(job.spp);
+    let plain_variance = [0, 1, 2].map(|channel| {
+        let strata = strata.iter().zip(&plain_squares);
+        let variances = strata.map(|(moments, squares)| {
+            (squares.components()[channel] * a_sub_pixel - moments.mean[channel].powi(2)).max(0.0)
+        });
+        variances.sum::<f64>() / 4.0
+    });
+    Pixel {
+        mean,
+        variance,
+        plain_variance,
+    }
 }
 
 /// Running mean and sum of squared deviations (Welford's).

@@ -74,7 +74,7 @@ impl World {
         }
     }
 
-    /// Radiance of one sample of a pixel.
+    /// One sample of a pixel.
     pub(super) fn sample(
         &self,
         view: &View,
@@ -82,9 +82,9 @@ impl World {
         sub_pixel: [u8; 2],
         termination: Termination,
         draws: &mut Draws<'_>,
-    ) -> [f64; 3] {
+    ) -> Sample {
         let mut ray = view.ray(pixel, sub_pixel, draws);
-        let mut radiance = Vector::of([0.0; 3]);
+        let mut found = Found::default();
         let mut throughput = Vector::of([1.0; 3]);
         let mut met = 0;
         // The diffuse surface that the ray comes from, where its light was looked for as well.
@@ -94,7 +94,7 @@ impl World {
             met += 1;
             if surface.emits {
                 let weight = looked_from.map_or(1.0, |place| self.weight(&place, ray.direction));
-                radiance = radiance + throughput.times(surface.emission) * weight;
+                found.meet(throughput.times(surface.emission), weight);
             }
             let ends = matches!(termination, Termination::Depth(limit) if met >= u32::from(limit));
             if ends || surface.strongest == 0.0 {
@@ -107,8 +107,8 @@ impl World {
                 ball: hit.ball,
             };
             let is_diffuse = matches!(surface.kind, Kind::Diffuse);
-            if is_diffuse && let Some(light) = self.look_for_light(&place, met, draws) {
-                radiance = radiance + throughput.times(light);
+            if is_diffuse && let Some((emission, weight)) = self.look_for_light(&place, met, draws) {
+                found.see(throughput.times(emission), weight);
             }
             if termination == Termination::Roulette && met > SURE_SURFACES {
                 if draws.uniform() >= surface.strongest {
@@ -123,11 +123,11 @@ impl World {
             };
             looked_from = is_diffuse.then_some(place);
         }
-        [radiance.x, radiance.y, radiance.z]
+        found.sample
     }
 
-    /// Light from a direction in which emitters are, as much of it as counts at `place`, the surface `number` of its path.
-    fn look_for_light(&self, place: &Place, number: u32, draws: &mut Draws<'_>) -> Option<Vector> {
+    /// Light from a direction in which emitters are, and how much of it counts at `place`, the surface `number` of its path.
+    fn look_for_light(&self, place: &Place, number: u32, draws: &mut Draws<'_>) -> Option<(Vector, f64)> {
         let direction = self.lights.direction(place, number, draws)?;
         if direction.dot(place.normal) <= 0.0 {
             return None;
@@ -141,11 +141,58 @@ impl World {
         let surface = &self.surfaces[first_hit(&self.balls, &ray)?.ball];
         surface
             .emits
-            .then(|| surface.emission * self.weight(place, direction))
+            .then(|| (surface.emission, self.weight(place, direction)))
     }
 
     fn weight(&self, place: &Place, direction: Vector) -> f64 {
         self.lights.weight(place, direction, direction.dot(place.normal))
+    }
+}
+
+/// What a path is worth.
+#[derive(Clone, Copy)]
+pub(super) struct Sample {
+    /// Radiance.
+    pub(super) radiance: Vector,
+    /// An estimate of the mean square of what a *plain* path brings: Kajiya's walk, that only meets light and is as long.
+    pub(super) plain_square: Vector,
+}
+
+/// Light along a path.
+///
+/// A plain path counts all that it meets as a whole, with a chance of which `weight`, over both ways of finding light, is an estimate. Its
+/// square grows by `v (v + 2 s)` where it meets `v` after `s`, and the mean of that is estimated as the mean of `v` is.
+struct Found {
+    sample: Sample,
+    /// What a plain path has met so far.
+    met: Vector,
+}
+
+impl Default for Found {
+    fn default() -> Self {
+        let dark = Vector::of([0.0; 3]);
+        Self {
+            sample: Sample {
+                radiance: dark,
+                plain_square: dark,
+            },
+            met: dark,
+        }
+    }
+}
+
+impl Found {
+    /// Light by a connection.
+    fn see(&mut self, light: Vector, weight: f64) {
+        let growth = light.times(light + self.met * 2.0);
+        self.sample.radiance = self.sample.radiance + light * weight;
+        self.sample.plain_square = self.sample.plain_square + growth * weight;
+    }
+
+    /// Light by the path itself.
+    fn meet(&mut self, light: Vector, weight: f64) {
+        self.see(light, weight);
+        self.met = self.met + light;
     }
 }
 

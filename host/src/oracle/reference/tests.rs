@@ -51,7 +51,7 @@ fn the_standard_scene_has_its_published_mean() {
         spp: 64,
         ..SMALL
     };
-    let estimate = render(&cornell(), &job, |_| {});
+    let estimate = render(&cornell(), &job, |_| {}).estimate;
     let (mean, error) = mean_and_error(&estimate);
     for ((mean, error), expected) in mean.into_iter().zip(error).zip([0.3385, 0.2603, 0.3406]) {
         assert!(
@@ -68,7 +68,7 @@ fn a_furnace_with_roulette_glows_by_its_closed_form() {
     for (emission, albedo) in [(1.0, 0.5), (0.25, 0.9), (12.0, 0.0)] {
         for kind in ["diffuse", "mirror"] {
             let scene = furnace(emission, &format!("{kind} = [{albedo}, {albedo}, {albedo}]"));
-            let (mean, error) = mean_and_error(&render(&scene, &SMALL, |_| {}));
+            let (mean, error) = mean_and_error(&render(&scene, &SMALL, |_| {}).estimate);
             let expected = emission / (1.0 - albedo);
             for (mean, error) in mean.into_iter().zip(error) {
                 assert!(
@@ -95,7 +95,8 @@ fn a_furnace_of_fixed_depth_is_a_geometric_sum_without_noise() {
                 ..SMALL
             },
             |_| {},
-        );
+        )
+        .estimate;
         for pixel in estimate.picture.pixels() {
             let pixel = pixel.unwrap();
             assert!(
@@ -124,7 +125,7 @@ fn glass_neither_makes_nor_swallows_light() {
         radius = 2
         glass = [0.999, 0.999, 0.999]
         index = 1.5";
-    let estimate = render(&furnace(1.0, ball), &Job { spp: 256, ..SMALL }, |_| {});
+    let estimate = render(&furnace(1.0, ball), &Job { spp: 256, ..SMALL }, |_| {}).estimate;
     let darkest = estimate
         .picture
         .pixels()
@@ -154,7 +155,7 @@ fn threads_do_not_matter_but_the_seed_does() {
 #[test]
 fn no_two_rows_share_their_noise() {
     let scene = furnace(1.0, "diffuse = [0.9, 0.9, 0.9]");
-    let estimate = render(&scene, &SMALL, |_| {});
+    let estimate = render(&scene, &SMALL, |_| {}).estimate;
     let mut rows: Vec<Vec<_>> = estimate
         .picture
         .pixels()
@@ -185,6 +186,7 @@ fn the_stated_variance_is_that_of_repeated_renders() {
                 },
                 |_| {},
             )
+            .estimate
         })
         .collect();
     let (mut stated, mut seen) = (0.0, 0.0);
@@ -216,7 +218,8 @@ fn red_is_left_and_the_light_is_at_the_top() {
             ..SMALL
         },
         |_| {},
-    );
+    )
+    .estimate;
     let at = |column: usize, row: usize| estimate.picture.pixels()[row * 32 + column].unwrap();
     let (left, right) = (at(1, 12), at(30, 12));
     assert!(left[0] > 2.0 * left[2], "{left:?}");
@@ -234,4 +237,25 @@ fn progress_ends_at_all_samples() {
         most.fetch_max(done, Ordering::Relaxed);
     });
     assert_eq!(most.into_inner(), SMALL.samples());
+}
+
+/// As many samples of one variance as of another: the mean of both.
+#[test]
+fn noise_is_that_of_all_samples() {
+    let estimate = |variance: f64, spp: u32| Estimate {
+        picture: Picture::new(1, 1, vec![Some([0.5; 3])]),
+        variance: Some(vec![[variance / f64::from(spp); 3]]),
+        spp: Some(spp),
+    };
+    let known = Rendered {
+        estimate: estimate(0.1, 192),
+        plain_variance: vec![[4.0; 3]],
+    };
+    let pooled = known.pooled_noise(estimate(0.0, 64));
+    assert_eq!(pooled.variance, Some(vec![[3.0 / 64.0; 3]]));
+    let unknown = Estimate {
+        variance: None,
+        ..estimate(0.0, 64)
+    };
+    assert_eq!(known.pooled_noise(unknown.clone()), unknown);
 }

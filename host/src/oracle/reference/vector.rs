@@ -14,6 +14,10 @@ impl Vector {
         Self { x, y, z }
     }
 
+    pub(super) fn components(self) -> [f64; 3] {
+        [self.x, self.y, self.z]
+    }
+
     pub(super) fn dot(self, other: Self) -> f64 {
         self.x * other.x + self.y * other.y + self.z * other.z
     }

@@ -70,7 +70,7 @@ impl Shape for VastSphere {
     ) -> Option<Length<P>> {
         match P::QUADRATIC {
             Quadratic::Textbook => self.textbook::<P>(ray, epsilon, t_max),
-            Quadratic::Power => self.closely::<P, F>(ray, standing, epsilon, t_max),
+            Quadratic::Power => self.closely::<P>(ray, standing, self.has_inside::<F>(), epsilon, t_max),
         }
     }
 
@@ -129,11 +129,12 @@ impl VastSphere {
     }
 
     /// Where a ray hits it, by [`Quadratic::Power`]: from above where it goes under, and from within a ball of glass where it
-    /// comes up.
-    fn closely<P: Profile, F: Needs>(
+    /// comes up. What the image needs is left out of its type, or an image would have it twice: for rooms and for what is within.
+    fn closely<P: Profile>(
         &self,
         ray: &Ray<P::Numbers>,
         standing: Standing,
+        has_inside: bool,
         epsilon: Length<P>,
         t_max: Length<P>,
     ) -> Option<Length<P>> {
@@ -143,7 +144,6 @@ impl VastSphere {
         } else {
             self.height_and_slope::<P>(ray)
         };
-        let has_inside = self.has_inside::<F>();
         let below = has_inside
             && if standing.departs {
                 slope < P::Numbers::ZERO
@@ -163,11 +163,12 @@ impl VastSphere {
         if has_inside && P::Numbers::is_level(root) {
             return None;
         }
-        let t = if below {
-            P::Numbers::comes_up(self.bend, height, slope, root, t_max)?
+        let (bend, height, slope) = if below {
+            (self.bend.turned(), -height, -slope)
         } else {
-            P::Numbers::goes_under(self.bend, height, slope, root, t_max)?
+            (self.bend, height, slope)
         };
+        let t = P::Numbers::goes_under(bend, height, slope, root, t_max)?;
         let is_hit = if self.is_hollow() && !standing.departs {
             // Rounding may have put the start below: then the hit is at once.
             t < t_max
@@ -188,7 +189,8 @@ impl VastSphere {
         let root = P::Numbers::root_of_slope(self.bend, height, slope)?;
         let hits = [
             P::Numbers::goes_under(self.bend, height, slope, root, t_max),
-            P::Numbers::comes_up(self.bend, height, slope, root, t_max),
+            // It comes up where, seen from the other side, it goes under.
+            P::Numbers::goes_under(self.bend.turned(), -height, -slope, root, t_max),
         ];
         let beyond = |nearest: Option<Length<P>>, t: Length<P>| match nearest {
             Some(nearest) if nearest <= t => Some(nearest),

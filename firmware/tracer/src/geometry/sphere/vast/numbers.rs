@@ -1,6 +1,7 @@
 //! What vast spheres need of the number formats.
 
 use core::fmt::Debug;
+use core::ops::Neg;
 
 use bytemuck::{Pod, Zeroable};
 use fixedmath::{I2F30, I16F16, I18F46, division, root, unit};
@@ -53,7 +54,7 @@ impl Bend {
 /// the pole is no further away, and the radius is at least twice that. Then heights are lengths, and slopes stay below 1.8.
 pub trait VastNumbers: Directions {
     /// A height before it is rounded.
-    type Height: Copy + Debug;
+    type Height: Copy + Debug + Neg<Output = Self::Height>;
 
     /// A height of 0.
     const LEVEL: Self::Height;
@@ -77,14 +78,6 @@ pub trait VastNumbers: Directions {
     fn is_level(root: Self::Unit) -> bool;
     /// Where the ray goes under the surface, if that is nearer than `t_max` or only a little further; at once, if it is below.
     fn goes_under(
-        bend: Bend,
-        height: Self::Height,
-        slope: Self::Unit,
-        root: Self::Unit,
-        t_max: Self::Length,
-    ) -> Option<Self::Length>;
-    /// Where it comes up from below, likewise.
-    fn comes_up(
         bend: Bend,
         height: Self::Height,
         slope: Self::Unit,
@@ -182,10 +175,6 @@ impl VastNumbers for Mixed {
         Some(I16F16::from_bits(division::long(twice, steepness) as i32))
     }
 
-    fn comes_up(bend: Bend, height: I18F46, slope: I2F30, root: I2F30, t_max: I16F16) -> Option<I16F16> {
-        Self::goes_under(bend.turned(), -height, -slope, root, t_max)
-    }
-
     fn upward(normal: [I2F30; 3], bend: Bend, above: [I16F16; 3]) -> [I2F30; 3] {
         unit::renormalised([0, 1, 2].map(|i| {
             let turned = i64::from(above[i].to_bits()) * i64::from(bend.curvature);
@@ -235,10 +224,6 @@ impl VastNumbers for Published {
 
     fn goes_under(bend: Bend, height: I18F46, slope: I16F16, root: I16F16, t_max: I16F16) -> Option<I16F16> {
         Mixed::goes_under(bend, height, fine(slope), fine(root), t_max)
-    }
-
-    fn comes_up(bend: Bend, height: I18F46, slope: I16F16, root: I16F16, t_max: I16F16) -> Option<I16F16> {
-        Mixed::comes_up(bend, height, fine(slope), fine(root), t_max)
     }
 
     fn upward(normal: [I2F30; 3], bend: Bend, above: [I16F16; 3]) -> [I16F16; 3] {
