@@ -35,20 +35,20 @@ impl Linear<'_> {
         (!ray.departs_from(exit.wall.primitive)).then_some(exit)
     }
 
-    /// The nearest hit that is nearer than `t_max`, of the primitives of the kinds in `F`; of no primitive where there is none.
+    /// The nearest hit of the primitives of the kinds in `F` that is nearer than `other`, or else that.
     #[inline]
-    fn closest_from<P: Profile, F: Needs>(
+    fn closest_of<P: Profile, F: Needs>(
         &self,
         ray: &Ray<P::Numbers>,
         epsilon: Length<P>,
-        t_max: Length<P>,
+        other: Hit<P::Numbers>,
     ) -> Hit<P::Numbers> {
         let mut closest = Closest::<P, F> {
             list: self,
             ray,
             epsilon,
-            t_max,
-            nearest: PrimitiveId::NONE,
+            t_max: other.t,
+            nearest: other.primitive,
             needs: PhantomData,
         };
         self.primitives.visit(&mut closest);
@@ -58,21 +58,21 @@ impl Linear<'_> {
         }
     }
 
-    /// The nearest hit of all primitives.
+    /// The nearest hit of all primitives; of none of them where there is none.
     #[inline]
     fn closest<P: Profile, F: Needs>(&self, ray: &Ray<P::Numbers>, epsilon: Length<P>) -> Hit<P::Numbers> {
-        self.closest_from::<P, F>(ray, epsilon, P::Numbers::FAR)
+        let nothing = Hit {
+            t: P::Numbers::FAR,
+            primitive: PrimitiveId::NONE,
+        };
+        self.closest_of::<P, F>(ray, epsilon, nothing)
     }
 
-    /// The same, kept apart from what happens more often.
+    /// The nearest hit of all hollow spheres, kept apart from what happens more often.
     #[cold]
     #[inline(never)]
-    fn closest_apart<P: Profile, F: Needs>(
-        &self,
-        ray: &Ray<P::Numbers>,
-        epsilon: Length<P>,
-    ) -> Hit<P::Numbers> {
-        self.closest::<P, F>(ray, epsilon)
+    fn closest_wall<P: Profile>(&self, ray: &Ray<P::Numbers>, epsilon: Length<P>) -> Hit<P::Numbers> {
+        self.closest::<P, Walls>(ray, epsilon)
     }
 
     /// The surface at a hit; none where there is no such primitive.
@@ -119,6 +119,13 @@ struct Within<F>(PhantomData<F>);
 
 impl<F: Needs> Needs for Within<F> {
     const NEEDS: Capabilities = F::NEEDS.without(Capability::Hollow);
+}
+
+/// The walls.
+struct Walls;
+
+impl Needs for Walls {
+    const NEEDS: Capabilities = Capabilities::of(&[Capability::Hollow]);
 }
 
 /// The nearest hit so far.
@@ -214,29 +221,27 @@ impl Aggregate for Linear<'_> {
         if !F::NEEDS.has(Capability::Room) || matches!(P::QUADRATIC, Quadratic::Textbook) {
             return self.interaction::<P, F>(ray, self.closest::<P, F>(ray, epsilon));
         }
-        let hit = match self.exit::<P>(ray) {
-            None => self.closest_apart::<P, F>(ray, epsilon),
-            Some(exit) => {
-                let within = self.closest_from::<P, Within<F>>(ray, epsilon, exit.t);
-                if within.primitive != PrimitiveId::NONE {
-                    within
-                } else if exit.wall.reciprocal == 0 {
-                    Hit {
-                        t: exit.t,
-                        primitive: exit.wall.primitive,
-                    }
-                } else {
-                    return Some(Interaction {
-                        point: exit.point,
-                        normal: P::Numbers::normal_of_wall(exit.wall, exit.point),
-                        from_inside: true,
-                        primitive: exit.wall.primitive,
-                        material: exit.wall.material,
-                    });
-                }
-            }
+        let exit = self.exit::<P>(ray);
+        let wall = match exit {
+            Some(exit) => Hit {
+                t: exit.t,
+                primitive: exit.wall.primitive,
+            },
+            None => self.closest_wall::<P>(ray, epsilon),
         };
-        self.interaction::<P, F>(ray, hit)
+        let hit = self.closest_of::<P, Within<F>>(ray, epsilon, wall);
+        match exit {
+            Some(exit) if hit.primitive == exit.wall.primitive && exit.wall.reciprocal != 0 => {
+                Some(Interaction {
+                    point: exit.point,
+                    normal: P::Numbers::normal_of_wall(exit.wall, exit.point),
+                    from_inside: true,
+                    primitive: exit.wall.primitive,
+                    material: exit.wall.material,
+                })
+            }
+            _ => self.interaction::<P, F>(ray, hit),
+        }
     }
 
     fn any<P: Profile, F: Needs>(&self, ray: &Ray<P::Numbers>, epsilon: Length<P>, t_max: Length<P>) -> bool {
