@@ -64,5 +64,8 @@ fn write(folder: &Path, part: &Part, findings: &Findings) -> anyhow::Result<Stri
     for plot in &findings.plots {
         plot.write(&folder.join(format!("{}.png", plot.name)))?;
     }
+    for sheet in &findings.sheets {
+        sheet.write(&folder.join(format!("{}.png", sheet.name)))?;
+    }
     Ok(text)
 }

@@ -1,10 +1,12 @@
 //! Why paths in fixed point are not those in double precision, scene by scene, and what it costs their pictures.
 
 use tracer::profile::{Paper, Precise};
-use tracer::unit::{Plan, Termination};
+use tracer::unit::Plan;
 
+use super::part::plan;
 use super::table::{figure, share};
 use super::{Effort, Error, Findings, Part, Plot, Table};
+use crate::firmware::arithmetic::Arithmetic;
 use crate::oracle::divergence::{
     BOUNCES, Cause, Divergence, Explicable, Quantity, explain, explain_rounding,
 };
@@ -18,7 +20,7 @@ pub(super) const PART: Part = Part {
     measure,
 };
 
-const SIZE: (u16, u16) = (64, 48);
+const SIZE: [u16; 2] = [64, 48];
 /// Samples a pixel; of `paper` a quarter, which parts a thousand times as often.
 const SPP: u64 = 4096;
 
@@ -64,33 +66,23 @@ const ROUNDED: [(&str, Quantity); 3] = [
 
 fn measure(effort: &Effort) -> Result<Findings, Error> {
     let spp = effort.of(SPP / 4).next_multiple_of(4) as u32;
-    let pixels = u64::from(SIZE.0) * u64::from(SIZE.1);
+    let pixels = u64::from(SIZE[0]) * u64::from(SIZE[1]);
     effort.expect(SCENES.len() as u64 * 5 * pixels * u64::from(spp) + pixels * 3 * u64::from(4 * spp));
     let mut findings = Findings::default();
     for (file, plots) in SCENES {
         let scene = Scene::load(&workspace::file(file)?)?;
-        let compiled = compile(&scene, SIZE.0, SIZE.1);
+        let compiled = compile(&scene, SIZE[0], SIZE[1]);
         let [precise, paper] = plots.map_or([None; 2], |names| names.map(Some));
-        add::<Precise>(&mut findings, effort, &compiled, file, 4 * spp, precise);
-        add::<Paper>(&mut findings, effort, &compiled, file, spp, paper);
+        let plan = |arithmetic, spp| plan(arithmetic, &compiled, SIZE, spp);
+        let (ours, published) = (plan(Arithmetic::Precise, 4 * spp), plan(Arithmetic::Paper, spp));
+        add::<Precise>(&mut findings, effort, &compiled, file, &ours, precise);
+        add::<Paper>(&mut findings, effort, &compiled, file, &published, paper);
     }
     let scene = Scene::load(&workspace::file(SCENES[0].0)?)?;
     findings
         .tables
-        .push(by_quantity(effort, &compile(&scene, SIZE.0, SIZE.1), 4 * spp));
+        .push(by_quantity(effort, &compile(&scene, SIZE[0], SIZE[1]), 4 * spp));
     Ok(findings)
-}
-
-fn plan<P: Explicable>(spp: u32) -> Plan {
-    Plan {
-        width: SIZE.0,
-        height: SIZE.1,
-        spp,
-        samples_per_unit: spp.min(64) as u16,
-        seed: 1,
-        termination: Termination::Roulette,
-        epsilon: P::EPSILON,
-    }
 }
 
 fn add<P: Explicable>(
@@ -98,10 +90,10 @@ fn add<P: Explicable>(
     effort: &Effort,
     compiled: &CompiledScene,
     file: &str,
-    spp: u32,
+    plan: &Plan,
     plot_name: Option<&'static str>,
 ) {
-    let found = explain::<P>(compiled, &plan::<P>(spp), |samples| effort.done(samples));
+    let found = explain::<P>(compiled, plan, |samples| effort.done(samples));
     let title = format!("`{file}`, `{}`, {} paths", P::NAME, found.samples);
     let mut table = Table::new(&title, UNITS, &HEAD);
     for cause in Cause::ALL {
@@ -166,7 +158,7 @@ fn by_quantity(effort: &Effort, compiled: &CompiledScene, spp: u32) -> Table {
         &head,
     );
     for (name, quantity) in ROUNDED {
-        let plan = plan::<Precise>(spp);
+        let plan = plan(Arithmetic::Precise, compiled, SIZE, spp);
         let found = explain_rounding::<Precise>(compiled, &plan, quantity, |samples| effort.done(samples));
         let bias = found.total_bias();
         table.push(vec![

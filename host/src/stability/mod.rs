@@ -3,17 +3,26 @@
 //! Each part is a file that measures one thing. It ends in tables for `docs/stability.md`, plots where people would rather look, and
 //! faults: what should have held and did not. To add a part is a module and a line in [`PARTS`].
 
+mod convergence;
 mod divergence;
 mod draw;
 mod exact;
+mod figures;
 mod intersection;
 mod part;
 mod plot;
+mod sheet;
 mod table;
 
 pub use part::{Effort, Error, Findings, Part};
 pub use plot::Plot;
+pub use sheet::Sheet;
 pub use table::Table;
 
 /// All parts, in the order of `docs/stability.md`.
-pub const PARTS: &[Part] = &[intersection::PART, divergence::PART];
+pub const PARTS: &[Part] = &[
+    intersection::PART,
+    divergence::PART,
+    figures::PART,
+    convergence::PART,
+];

@@ -2,7 +2,11 @@
 
 use indicatif::ProgressBar;
 
-use super::{Plot, Table};
+use tracer::unit::{Plan, Termination};
+
+use super::{Plot, Sheet, Table};
+use crate::firmware::arithmetic::Arithmetic;
+use crate::scene::CompiledScene;
 
 /// Why a part could not be measured.
 pub type Error = Box<dyn std::error::Error + Send + Sync>;
@@ -57,6 +61,26 @@ pub struct Findings {
     pub tables: Vec<Table>,
     /// The same to look at.
     pub plots: Vec<Plot>,
+    /// What it rendered.
+    pub sheets: Vec<Sheet>,
     /// What should have held and did not, a line each.
     pub faults: Vec<String>,
+}
+
+/// How `arithmetic` renders a picture of `width` by `height` unless users say otherwise.
+pub(super) fn plan(
+    arithmetic: Arithmetic,
+    compiled: &CompiledScene,
+    [width, height]: [u16; 2],
+    spp: u32,
+) -> Plan {
+    Plan {
+        width,
+        height,
+        spp,
+        samples_per_unit: spp.min(64) as u16,
+        seed: 1,
+        termination: Termination::Roulette,
+        epsilon: arithmetic.epsilon(compiled.scale.magnification),
+    }
 }

@@ -9,6 +9,7 @@
 
 pub(crate) mod samples;
 
+use fixedmath::I16F16;
 use rayon::prelude::*;
 use tracer::camera::Camera;
 use tracer::integrator::{Integrator, Path};
@@ -36,6 +37,22 @@ pub struct Paired {
     pub variance: Vec<[f64; 3]>,
 }
 
+impl Paired {
+    /// The picture with the noise of its difference from the double, and the double as if it were exact: what comes of comparing these is
+    /// arithmetic.
+    pub fn difference(&self) -> (Estimate, Estimate) {
+        let picture = Estimate {
+            variance: Some(self.variance.clone()),
+            ..self.picture.clone()
+        };
+        let double = Estimate {
+            variance: None,
+            ..self.double.clone()
+        };
+        (picture, double)
+    }
+}
+
 /// A pixel's samples, those of its double, and their differences.
 #[derive(Clone, Copy, Default)]
 struct Pixel {
@@ -52,8 +69,19 @@ pub fn render<P: Profile<Random: Clone>>(
     plan: &Plan,
     progress: impl Fn(u64) + Sync,
 ) -> Paired {
+    render_beside::<P>(compiled, plan, plan.epsilon, progress)
+}
+
+/// The same beside doubles of another epsilon than `plan`'s.
+pub fn render_beside<P: Profile<Random: Clone>>(
+    compiled: &CompiledScene,
+    plan: &Plan,
+    epsilon: I16F16,
+    progress: impl Fn(u64) + Sync,
+) -> Paired {
     let scene = compiled.view();
-    let paths = (Path::<P, All>::new(plan), Path::<Lockstep<P>, All>::new(plan));
+    let exact = Plan { epsilon, ..*plan };
+    let paths = (Path::<P, All>::new(plan), Path::<Lockstep<P>, All>::new(&exact));
     let cameras = (Camera::new(&compiled.camera), Camera::new(&compiled.camera));
     let unit = 2f64.powi(-compiled.exponent);
     let spans: Vec<Vec<Pixel>> = (0..plan.spans())
