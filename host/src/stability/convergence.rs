@@ -318,3 +318,44 @@ fn biases_row(file: &str, course: &Course, rendered: &Rendered) -> Result<(Vec<S
     ];
     Ok((row, faults))
 }
+
+#[cfg(test)]
+mod tests {
+    use indicatif::ProgressBar;
+
+    use super::*;
+
+    /// Proof that this part can fail: a picture that is darker by a thousandth, and one of a wrong tile.
+    #[test]
+    fn planted_faults_are_found() {
+        let effort = Effort::new(true, ProgressBar::hidden());
+        let scene = Scene::load(&workspace::file("scenes/cornell.toml").unwrap()).unwrap();
+        let compiled = compile(&scene, SIZE[0], SIZE[1]);
+        let rendered = reference(&effort, &scene, 16);
+        let course = course::<Precise>(&effort, Arithmetic::Precise, &compiled, &rendered, 16);
+        let faults = |change: &dyn Fn(usize, f64) -> f64| {
+            let pixels = course.last.picture.picture.pixels().iter().enumerate();
+            let changed =
+                pixels.map(|(index, pixel)| pixel.map(|pixel| pixel.map(|radiance| change(index, radiance))));
+            let mut last = course.last.clone();
+            last.picture.picture = Picture::new(SIZE[0], SIZE[1], changed.collect());
+            let changed = Course {
+                last,
+                errors: Vec::new(),
+                errors_of_double: Vec::new(),
+            };
+            biases_row("planted", &changed, &rendered).unwrap().1.join("; ")
+        };
+        assert!(faults(&|_, radiance| 0.999 * radiance).contains("0.01 %"));
+        let in_first_tile =
+            |index: usize| index % usize::from(SIZE[0]) < 8 && index / usize::from(SIZE[0]) < 8;
+        let tile = faults(&|index, radiance| {
+            if in_first_tile(index) {
+                1.02 * radiance
+            } else {
+                radiance
+            }
+        });
+        assert!(tile.contains("0.2 %"), "{tile}");
+    }
+}

@@ -23,12 +23,10 @@ pub(super) const PART: Part = Part {
 };
 
 const SCENE: &str = "scenes/cornell.toml";
-/// Of figure 2, and its samples a pixel.
-const LARGE: [u16; 2] = [96, 72];
-const LARGE_SPP: u64 = 20_000;
-/// Of each of figure 3's pictures.
-const SMALL: [u16; 2] = [64, 48];
-const SMALL_SPP: u64 = 4096;
+const SIZE: [u16; 2] = [64, 48];
+/// Samples a pixel of figure 2, as published, and of each of figure 3's pictures.
+const FIGURE_2: u64 = 20_000;
+const FIGURE_3: u64 = 2048;
 /// In the scene's unit of length.
 const EPSILONS: [f64; 6] = [0.001, 0.003, 0.01, 0.03, 0.1, 0.3];
 /// Differences of radiance that are shown in full colour.
@@ -49,13 +47,14 @@ const HEAD: [&str; 6] = [
 ];
 
 fn measure(effort: &Effort) -> Result<Findings, Error> {
-    let [large, small] = [LARGE_SPP, SMALL_SPP].map(|spp| effort.of(spp).next_multiple_of(64) as u32);
-    let samples = |[width, height]: [u16; 2], spp: u32| u64::from(width) * u64::from(height) * u64::from(spp);
-    effort.expect(2 * samples(LARGE, large) + 2 * EPSILONS.len() as u64 * samples(SMALL, small));
+    let [two, three] = [FIGURE_2, FIGURE_3].map(|spp| effort.of(spp).next_multiple_of(4) as u32);
+    let pixels = u64::from(SIZE[0]) * u64::from(SIZE[1]);
+    effort.expect(2 * pixels * (u64::from(two) + EPSILONS.len() as u64 * u64::from(three)));
     let scene = Scene::load(&workspace::file(SCENE)?)?;
+    let compiled = compile(&scene, SIZE[0], SIZE[1]);
     let mut findings = Findings::default();
-    figure_2(&mut findings, effort, &compile(&scene, LARGE[0], LARGE[1]), large)?;
-    figure_3(&mut findings, effort, &compile(&scene, SMALL[0], SMALL[1]), small)?;
+    figure_2(&mut findings, effort, &compiled, two)?;
+    figure_3(&mut findings, effort, &compiled, three)?;
     Ok(findings)
 }
 
@@ -79,7 +78,7 @@ fn figure_2(
     let mut table = Table::new(&title, UNITS, &HEAD);
     let mut rows = Vec::new();
     for arithmetic in [Arithmetic::Precise, Arithmetic::Paper] {
-        let plan = plan(arithmetic, compiled, LARGE, spp);
+        let plan = plan(arithmetic, compiled, SIZE, spp);
         let paired = beside_double(arithmetic, compiled, &plan, effort);
         let epsilon = f64::from(plan.epsilon) * 2f64.powi(-compiled.scale.exponent);
         table.push(Figures::of(&paired)?.row(arithmetic, epsilon));
@@ -114,7 +113,7 @@ fn figure_3(
         for epsilon in EPSILONS {
             let plan = Plan {
                 epsilon: I16F16::from_num(epsilon * 2f64.powi(compiled.scale.exponent)),
-                ..plan(arithmetic, compiled, SMALL, spp)
+                ..plan(arithmetic, compiled, SIZE, spp)
             };
             let paired = beside_double(arithmetic, compiled, &plan, effort);
             let found = Figures::of(&paired)?;
