@@ -51,8 +51,7 @@ pub enum Quadratic {
 #[derive(Clone, Copy, Debug)]
 pub enum Paper {}
 
-/// Ours, and the default: directions in 2:30, squares in 32:32, no cancellation, and an epsilon of 2.4e-4 that only
-/// grazing corners need.
+/// Ours, and the default: directions in 2:30, squares in 32:32, no cancellation, and no epsilon.
 #[derive(Clone, Copy, Debug)]
 pub enum Precise {}
 
@@ -67,7 +66,7 @@ impl Profile for Paper {
 
 impl Profile for Precise {
     const NAME: &'static str = "precise";
-    const EPSILON: I16F16 = I16F16::from_bits(16);
+    const EPSILON: I16F16 = I16F16::ZERO;
     const QUADRATIC: Quadratic = Quadratic::Power;
     type Numbers = Mixed;
     type Random = FullState;

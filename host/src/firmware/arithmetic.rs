@@ -30,7 +30,7 @@ impl Arithmetic {
     /// The profile's own self-intersection epsilon, in a core's unit, for a scene whose smallest sphere is 2^`magnification` times as
     /// large for a core as that of the Cornell box.
     ///
-    /// Ours is a few units of the last place, however large the scene. The published one is a length of the published scene.
+    /// Ours is none. The published one is a length of the published scene.
     pub fn epsilon(self, magnification: i32) -> I16F16 {
         match self {
             Self::Paper if magnification < 0 => {

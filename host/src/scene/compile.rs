@@ -207,7 +207,8 @@ pub(crate) fn record(sphere: &Sphere, material: MaterialId) -> SphereRecord {
     }
 }
 
-fn material(sphere: &Sphere, exponent: i32) -> MaterialRecord {
+/// The record of a sphere's material, for light of this common exponent.
+pub(crate) fn material(sphere: &Sphere, exponent: i32) -> MaterialRecord {
     let (reflectance, bsdf, parameters) = match sphere.material {
         Material::Diffuse(colour) => (colour, Kind::Diffuse, [0; 3]),
         Material::Mirror(colour) => (colour, Kind::Mirror, [0; 3]),

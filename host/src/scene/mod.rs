@@ -21,11 +21,12 @@ mod vector;
 
 use std::path::{Path, PathBuf};
 
-pub(crate) use compile::record as sphere_record;
 pub use compile::{Blob, CompiledScene, compile};
+pub(crate) use compile::{material as material_record, record as sphere_record};
 pub(crate) use reach::REACH;
 pub use scale::Scale;
 pub use unit_size::samples_per_unit;
+pub(crate) use vast::record as vast_record;
 
 /// A checked scene.
 #[derive(Clone, Debug, PartialEq)]

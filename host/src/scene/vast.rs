@@ -9,7 +9,7 @@ use super::vector::{length, scaled, sub};
 use super::{Material, Sphere};
 
 /// The record of a sphere in a core's unit, around its scene's `middle`, for a tracer with this origin.
-pub(super) fn record(
+pub(crate) fn record(
     sphere: &Sphere,
     middle: [f64; 3],
     origin: [I16F16; 3],

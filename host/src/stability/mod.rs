@@ -11,6 +11,7 @@ mod figures;
 mod intersection;
 mod part;
 mod plot;
+mod reintersection;
 mod sheet;
 mod table;
 
@@ -22,6 +23,7 @@ pub use table::Table;
 /// All parts, in the order of `docs/stability.md`.
 pub const PARTS: &[Part] = &[
     intersection::PART,
+    reintersection::PART,
     divergence::PART,
     figures::PART,
     convergence::PART,

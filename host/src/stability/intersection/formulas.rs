@@ -112,7 +112,7 @@ fn coarsely(case: &Case) -> Line {
 }
 
 /// A ray in a profile's formats.
-pub(super) fn ray_of<P: Profile>(ray: &Ray<Mixed>) -> Ray<P::Numbers> {
+pub(in crate::stability) fn ray_of<P: Profile>(ray: &Ray<Mixed>) -> Ray<P::Numbers> {
     Ray {
         origin: ray.origin.map(P::Numbers::length),
         direction: ray.direction.map(P::Numbers::unit),

@@ -6,6 +6,8 @@ mod cases;
 mod formulas;
 mod tally;
 
+pub(super) use self::formulas::ray_of;
+
 use rayon::prelude::*;
 
 use self::cases::{CLASSES, Class};

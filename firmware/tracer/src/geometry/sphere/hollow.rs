@@ -2,7 +2,7 @@
 
 use bytemuck::{Pod, Zeroable};
 
-use super::{Length, SphereNumbers, SphereRecord, chord};
+use super::{Length, SphereNumbers, SphereRecord};
 use crate::arithmetic::Formats;
 use crate::capability::{Capability, Needs};
 use crate::geometry::{Bounds, Grid, Hit, Interaction, MaterialId, Ray, Shape, ShapeNumbers, Standing};
@@ -46,7 +46,10 @@ impl Shape for HollowSphere {
         let to_centre = self.0.centre_from::<P>(ray);
         let b = P::Numbers::length_of(P::Numbers::project(to_centre, ray.direction));
         if standing.departs {
-            return chord::<P>(b, epsilon, t_max);
+            // The far end of the chord, exactly 2 b; of none, where rounding has turned the ray out, the hit is at once.
+            let t = b + b;
+            let t = if t < epsilon { epsilon } else { t };
+            return (t < t_max).then_some(t);
         }
         let beyond = t_max - b;
         if beyond <= P::Numbers::NOTHING {

@@ -144,10 +144,3 @@ impl SphereRecord {
         }
     }
 }
-
-/// The far end of the chord that starts where a ray leaves a sphere, exactly `2 b`.
-#[inline]
-fn chord<P: Profile>(b: Length<P>, epsilon: Length<P>, t_max: Length<P>) -> Option<Length<P>> {
-    let t = b + b;
-    (t > epsilon && t < t_max).then_some(t)
-}

@@ -2,7 +2,7 @@
 
 use bytemuck::{Pod, Zeroable};
 
-use super::{CoarseSphere, Length, SphereNumbers, SphereRecord, chord};
+use super::{CoarseSphere, Length, SphereNumbers, SphereRecord};
 use crate::arithmetic::{Directions, Formats};
 use crate::capability::{Capability, Needs};
 use crate::geometry::{Bounds, Grid, Hit, Interaction, MaterialId, Ray, Shape, ShapeNumbers, Standing};
@@ -102,7 +102,9 @@ impl SolidSphere {
         }
         if standing.departs {
             return if has_inside() {
-                chord::<P>(b, epsilon, t_max)
+                // The far end of the chord, exactly 2 b; one that has no length starts no ray within.
+                let t = b + b;
+                (t > epsilon && t < t_max).then_some(t)
             } else {
                 None
             };
@@ -126,7 +128,7 @@ impl SolidSphere {
             return None;
         }
         let t = if inside { b + root } else { b - root };
-        (t > epsilon && t < t_max).then_some(t)
+        (t >= epsilon && t < t_max).then_some(t)
     }
 
     /// The same, kept apart from what happens more often.

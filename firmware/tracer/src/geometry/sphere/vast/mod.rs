@@ -169,13 +169,13 @@ impl VastSphere {
             (self.bend, height, slope)
         };
         let t = P::Numbers::goes_under(bend, height, slope, root, t_max)?;
-        let is_hit = if self.is_hollow() && !standing.departs {
-            // Rounding may have put the start below: then the hit is at once.
-            t < t_max
+        let is_hit = if standing.departs && !self.is_hollow() {
+            t > epsilon
         } else {
-            t > epsilon && t < t_max
+            // Rounding may have put the start below a wall: then the hit is at once.
+            t >= epsilon || self.is_hollow()
         };
-        is_hit.then_some(t)
+        (is_hit && t < t_max).then_some(t)
     }
 
     /// By [`Quadratic::Textbook`]: the first of both hits that exceeds epsilon.
