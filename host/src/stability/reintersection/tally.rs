@@ -2,8 +2,8 @@
 
 use super::neighbours::KINDS;
 
-/// Distances of neighbours that are told apart, by their upper ends in ulp; the last has none. Epsilons of 16 ulp, and of 0.001,
-/// 0.01 and 0.1, lie between two of them.
+/// Distances of neighbours that are told apart, by their upper ends in ulp; the last has none. Epsilons of 16 ulp, of 0.001 and of 0.1
+/// lie between two of them.
 pub(super) const BINS: [(f64, &str); 9] = [
     (1.0, "to 1"),
     (2.0, "2"),
