@@ -14,9 +14,13 @@ pub const FALSE_ALARM: f64 = 0.01;
 /// relative to next to nothing says nothing.
 const DIMMEST: f64 = 0.01;
 
+/// What cores round the light of a scene by, as a share of it: an emission of 1/8, in 16:16, by 2^-14 of itself at most. A tile of
+/// nothing but sky has no noise that would hide it, and so much is no error of the picture.
+const ROUNDING: f64 = 1.0 / 16384.0;
+
 /// Every tile against its own confidence interval.
 ///
-/// A test is one channel of one tile: the difference summed over its pixels, over the root of the summed variance. With
+/// A test is one channel of one tile: the difference summed over its pixels, less what cores round light by, over the root of the summed variance. With
 /// so many tests some are extreme by chance, so the threshold is Šidák's: all tests together raise a false alarm in one
 /// picture of a hundred ([`FALSE_ALARM`]). The channels of a tile are not independent, which makes it rarer still.
 #[derive(Clone, Debug, PartialEq)]
@@ -87,8 +91,20 @@ fn larger(a: f64, b: f64) -> f64 {
 struct Sums {
     pixels: usize,
     difference: [f64; 3],
-    reference: f64,
+    reference: [f64; 3],
     variance: [f64; 3],
+}
+
+impl Sums {
+    fn z_score(&self, channel: usize) -> f64 {
+        let difference = self.difference[channel];
+        let beyond = difference.abs() - ROUNDING * self.reference[channel];
+        if beyond > 0.0 {
+            beyond.copysign(difference) / self.variance[channel].sqrt()
+        } else {
+            0.0
+        }
+    }
 }
 
 /// Tests the tiles of a picture of `size`, whose reference has the mean `level`.
@@ -103,7 +119,7 @@ pub(super) fn test(pixels: &[Option<Pair>], size: (u16, u16), level: f64) -> Til
         .filter(|(_, _, sums)| sums.pixels > 0)
         .map(|(x, y, sums)| {
             let (bias, bias_noise) = bias(&sums, level);
-            let z = [0, 1, 2].map(|channel| z_score(sums.difference[channel], sums.variance[channel]));
+            let z = [0, 1, 2].map(|channel| sums.z_score(channel));
             Tile {
                 x,
                 y,
@@ -126,7 +142,7 @@ fn sums(pixels: &[Option<Pair>], (width, height): (u16, u16), x: u16, y: u16) ->
             sums.pixels += 1;
             for channel in 0..3 {
                 sums.difference[channel] += pair.difference(channel);
-                sums.reference += pair.reference[channel];
+                sums.reference[channel] += pair.reference[channel];
                 sums.variance[channel] += pair.variance[channel];
             }
         }
@@ -138,19 +154,15 @@ fn sums(pixels: &[Option<Pair>], (width, height): (u16, u16), x: u16, y: u16) ->
 fn bias(sums: &Sums, level: f64) -> (f64, f64) {
     let difference: f64 = sums.difference.iter().sum();
     let noise: f64 = sums.variance.iter().map(|variance| variance.sqrt()).sum();
-    let measure = sums.reference.max(DIMMEST * level * (3 * sums.pixels) as f64);
+    let measure = sums
+        .reference
+        .iter()
+        .sum::<f64>()
+        .max(DIMMEST * level * (3 * sums.pixels) as f64);
     if measure > 0.0 {
         (difference / measure, noise / measure)
     } else {
         (0.0, 0.0)
-    }
-}
-
-fn z_score(difference: f64, variance: f64) -> f64 {
-    if difference == 0.0 {
-        0.0
-    } else {
-        difference / variance.sqrt()
     }
 }
 

@@ -115,12 +115,11 @@ impl SolidSphere {
             return None;
         }
         let inside = power >= P::Numbers::NO_SQUARE;
-        let hidden = if inside {
-            !has_inside()
-        } else {
-            b <= P::Numbers::NOTHING
-        };
-        if hidden {
+        if inside && !has_inside() {
+            // Rounding has put the start under it, where it meets another surface, and the ray goes deeper: the hit is at once.
+            return (epsilon < t_max).then_some(epsilon);
+        }
+        if !inside && b <= P::Numbers::NOTHING {
             return None;
         }
         let root = P::Numbers::root(discriminant);

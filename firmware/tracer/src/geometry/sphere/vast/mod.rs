@@ -154,7 +154,7 @@ impl VastSphere {
             // Once under it, a ray stays there.
             !P::Numbers::is_below(P::Numbers::height_at(self.bend, height, slope, t_max))
         } else {
-            !below && (slope >= P::Numbers::ZERO || P::Numbers::is_below(height))
+            !below && slope >= P::Numbers::ZERO
         };
         if passes {
             return None;
@@ -172,7 +172,7 @@ impl VastSphere {
         let is_hit = if standing.departs && !self.is_hollow() {
             t > epsilon
         } else {
-            // Rounding may have put the start below a wall: then the hit is at once.
+            // Rounding may have put the start below, where two surfaces meet: then the hit is at once.
             t >= epsilon || self.is_hollow()
         };
         (is_hit && t < t_max).then_some(t)
