@@ -30,8 +30,8 @@ const SCENES: [(&str, Option<&str>); 5] = [
     ("scenes/cornell.toml", Some("convergence-cornell")),
     ("scenes/smallpt.toml", None),
     ("scenes/hard/overlap.toml", None),
-    ("tests/scenes/mirrors.toml", None),
-    ("tests/scenes/tiny.toml", None),
+    ("scenes/hard/corridor.toml", None),
+    ("scenes/hard/nested-glass.toml", None),
 ];
 
 /// What `precise` must keep to, on the mean of the picture and of each tile of 8x8 pixels, as a share of it.

@@ -3,11 +3,13 @@
 //! Each part is a file that measures one thing. It ends in tables for `docs/stability.md`, plots where people would rather look, and
 //! faults: what should have held and did not. To add a part is a module and a line in [`PARTS`].
 
+mod boards;
 mod convergence;
 mod divergence;
 mod draw;
 mod exact;
 mod figures;
+mod hard;
 mod intersection;
 mod part;
 mod plot;
@@ -27,4 +29,6 @@ pub const PARTS: &[Part] = &[
     divergence::PART,
     figures::PART,
     convergence::PART,
+    hard::PART,
+    boards::PART,
 ];
