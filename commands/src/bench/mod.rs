@@ -1,6 +1,7 @@
 //! `cargo xtask bench`
 
 mod generators;
+mod intersections;
 mod ops;
 mod trace;
 
@@ -12,6 +13,8 @@ use std::sync::atomic::AtomicBool;
 pub(crate) enum Bench {
     /// Judge the random number generators: period, lattice, streams, uniformity, dieharder
     Generators(generators::Arguments),
+    /// Print what each formula that meets a sphere costs on a core; how wrong it is, `verify stability` says
+    Intersections(intersections::Arguments),
     /// Print what each arithmetic operation costs on a core, and how wrong it is
     ///
     /// Instructions and cycles are those of an emulated core without the loop around them: once compiled in line, once
@@ -27,6 +30,7 @@ pub(crate) enum Bench {
 pub(crate) fn run(bench: &Bench, interrupted: &AtomicBool) -> anyhow::Result<ExitCode> {
     match bench {
         Bench::Generators(arguments) => generators::run(arguments),
+        Bench::Intersections(arguments) => intersections::run(arguments),
         Bench::Ops(arguments) => ops::run(arguments),
         Bench::Trace(arguments) => trace::run(arguments, interrupted),
     }

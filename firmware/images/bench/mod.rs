@@ -2,9 +2,9 @@
 
 use board::Core;
 use node::{Clock as _, Text};
-use operations::price::{Bench, called, price};
+use operations::price::{Bench, Price, called, price};
 use operations::transcript::transcript;
-use operations::{Group, Variant, Visitor};
+use operations::{Group, Variant, Visitor, intersection};
 use panic_halt as _;
 use runtime::clock::Clock;
 use runtime::{Board, ExitCode};
@@ -39,11 +39,25 @@ pub(crate) fn print(group: Group) -> ! {
     Core::exit(ExitCode::Success)
 }
 
+/// Prints what the formulas that meet a sphere cost, and ends the program. They have no transcript.
+#[inline(always)]
+pub(crate) fn print_intersections() -> ! {
+    let mut printer = Printer { row: 0, cases: 0 };
+    intersection::show(&mut Itself(Clock::start()), |price| printer.line(price, 0, 0));
+    Core::exit(ExitCode::Success)
+}
+
 impl Visitor for Printer {
     #[inline(never)]
     fn visit<V: Variant>(&mut self) {
         let price = price::<V>(&mut Itself(Clock::start()));
         let hash = transcript::<V>(self.cases);
+        self.line(price, hash, called::<V> as *const () as u32);
+    }
+}
+
+impl Printer {
+    fn line(&mut self, price: Price, hash: u64, address: u32) {
         let mut line = Text::from("row");
         for word in [
             self.row,
@@ -53,7 +67,7 @@ impl Visitor for Printer {
             price.called,
             (hash >> 32) as u32,
             hash as u32,
-            called::<V> as *const () as u32,
+            address,
         ] {
             line.push_str(" ").push_hex(word);
         }

@@ -12,6 +12,7 @@
 
 mod group;
 mod hard;
+pub mod intersection;
 pub mod number;
 pub mod op;
 mod operation;

@@ -41,10 +41,20 @@ pub struct Price {
 pub fn price<V: Variant>(bench: &mut impl Bench) -> Price {
     let mut random = Lcg64::new(1);
     let inputs = [(); CASES].map(|()| V::given(draw::<V>(&mut random)));
+    price_of(bench, &inputs, V::apply, called::<V>)
+}
+
+/// Takes the price of what is done with these inputs, in line and as a function that is called.
+pub fn price_of<Given: Number, Found: Number>(
+    bench: &mut impl Bench,
+    inputs: &[Given; CASES],
+    inline: impl Fn(Given) -> Found,
+    called: impl Fn(Given) -> Found,
+) -> Price {
     Price {
-        baseline: timed(bench, &inputs, |_| ()),
-        inline: timed(bench, &inputs, V::apply),
-        called: timed(bench, &inputs, called::<V>),
+        baseline: timed(bench, inputs, |_| ()),
+        inline: timed(bench, inputs, inline),
+        called: timed(bench, inputs, called),
     }
 }
 

@@ -16,6 +16,7 @@ mod plot;
 mod reintersection;
 mod sheet;
 mod table;
+mod vast;
 
 pub use part::{Effort, Error, Findings, Part};
 pub use plot::Plot;

@@ -12,7 +12,7 @@ pub struct Table {
 }
 
 impl Table {
-    /// A table without rows. `units` is a sentence or two that says what its figures are in.
+    /// A table without rows. `units` is a sentence or two that says what its figures are in; nothing where another table says it.
     pub fn new(title: impl Into<String>, units: impl Into<String>, head: &[&str]) -> Self {
         Self {
             title: title.into(),
@@ -46,7 +46,10 @@ impl fmt::Display for Table {
         let widths: Vec<usize> = (0..self.head.len())
             .map(|column| cells(column).map(|cell| cell.chars().count()).max().unwrap_or(0))
             .collect();
-        writeln!(f, "### {}\n\n{}\n", self.title, self.units)?;
+        writeln!(f, "### {}\n", self.title)?;
+        if !self.units.is_empty() {
+            writeln!(f, "{}\n", self.units)?;
+        }
         let line = |f: &mut fmt::Formatter<'_>, row: &[String]| {
             for (column, (cell, &width)) in row.iter().zip(&widths).enumerate() {
                 // Names on the left, figures on the right.

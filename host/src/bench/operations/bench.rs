@@ -6,6 +6,7 @@ use std::{fs, io};
 use cycles::file::{self, FileError};
 use cycles::{Cycles, cycles};
 use operations::Group;
+use operations::intersection::PRICED;
 use operations::price::{CASES, ROUNDS};
 use rayon::prelude::*;
 
@@ -147,13 +148,35 @@ pub fn image_name(group: Group) -> String {
     format!("prices_{}", group.name())
 }
 
-fn measure_group(
+/// What formulas that meet a sphere cost, in the order of [`PRICED`]: instructions and cycles in line.
+pub fn intersections(toolchain: &Toolchain, qemu: &Path, board: Board) -> Result<Vec<[f64; 2]>, BenchError> {
+    const IMAGE: &str = "prices_intersection";
+    let images = firmware::build_examples(toolchain, board, &[IMAGE.to_owned()], None)?;
+    let plugin = plugin::ready(qemu)?;
+    let mut prices = Vec::new();
+    for elf in &images {
+        let (lines, loops) = record(qemu, &plugin, board, IMAGE, elf, PRICED.len())?;
+        prices.extend(
+            lines
+                .iter()
+                .zip(loops)
+                .map(|(line, [baseline, inline, _called])| {
+                    [line.instructions(line.inline), differences(baseline, inline)[1]]
+                }),
+        );
+    }
+    Ok(prices)
+}
+
+/// Runs an image, and gives what it said of its rows and their loops.
+fn record(
     qemu: &Path,
     plugin: &Path,
     board: Board,
-    group: Group,
+    image: &str,
     elf: &Path,
-) -> Result<Vec<Measurement>, BenchError> {
+    rows: usize,
+) -> Result<(Vec<Line>, Vec<[Cycles; LOOPS]>), BenchError> {
     let folder = tempfile::tempdir().map_err(BenchError::Folder)?;
     let recorder = Recorder {
         plugin: plugin.to_owned(),
@@ -166,17 +189,27 @@ fn measure_group(
         cause,
     })?;
     let said = String::from_utf8_lossy(&output.stdout);
-    let failed = || BenchError::Core {
-        image: image_name(group),
-        status: output.status.to_string(),
-        said: format!("{said}{}", String::from_utf8_lossy(&output.stderr)),
-    };
     let lines: Vec<Line> = said.lines().filter_map(Line::parse).collect();
-    let entries = entries(group);
-    if !output.status.success() || lines.len() != entries.len() {
-        return Err(failed());
+    if !output.status.success() || lines.len() != rows {
+        return Err(BenchError::Core {
+            image: image.to_owned(),
+            status: output.status.to_string(),
+            said: format!("{said}{}", String::from_utf8_lossy(&output.stderr)),
+        });
     }
-    let loops = loops(&recorder.file, group, entries.len())?;
+    let loops = loops(&recorder.file, image, rows)?;
+    Ok((lines, loops))
+}
+
+fn measure_group(
+    qemu: &Path,
+    plugin: &Path,
+    board: Board,
+    group: Group,
+    elf: &Path,
+) -> Result<Vec<Measurement>, BenchError> {
+    let entries = entries(group);
+    let (lines, loops) = record(qemu, plugin, board, &image_name(group), elf, entries.len())?;
     let damaged = |cause: String| BenchError::Elf {
         path: elf.to_owned(),
         cause,
@@ -189,7 +222,9 @@ fn measure_group(
     rows.map(|((entry, line), [baseline, inline, called])| {
         compare(&entry, &line)?;
         let cycles = |with: Cycles| differences(baseline, with);
-        let reach = code.from(line.address.into()).ok_or_else(failed)?;
+        let reach = code
+            .from(line.address.into())
+            .ok_or_else(|| damaged(format!("it has no function at {:#x}", line.address)))?;
         Ok(Measurement {
             entry,
             board,
@@ -207,12 +242,12 @@ fn measure_group(
 }
 
 /// The cycles of each row's loops.
-fn loops(recording: &Path, group: Group, rows: usize) -> Result<Vec<[Cycles; LOOPS]>, BenchError> {
+fn loops(recording: &Path, image: &str, rows: usize) -> Result<Vec<[Cycles; LOOPS]>, BenchError> {
     let flows = file::read(recording)?.segments;
     let interrupted = flows.iter().any(|flow| flow.interruption().is_some());
     if flows.len() != LOOPS * rows || interrupted {
         return Err(BenchError::Loops {
-            image: image_name(group),
+            image: image.to_owned(),
             found: flows.len(),
             rows,
         });

@@ -22,6 +22,7 @@ use bench::{BenchError, Measurement};
 use record::{Proof, Record, RecordError};
 use verify::{Depth, verify};
 
+use operations::intersection::PRICED;
 use operations::{Format, Group, Maker, Operation, Variant, Visitor, transcript};
 use serde::Serialize;
 
@@ -59,6 +60,22 @@ impl Entry {
             Maker::Rival(maker) => format!("{maker} {}", self.variant),
         }
     }
+}
+
+/// What each formula that meets a sphere costs on a core, of rays that meet it, in lines of Markdown.
+pub fn intersections(toolchain: &Toolchain, qemu: &Path, board: Board) -> Result<String, BenchError> {
+    let prices = bench::intersections(toolchain, qemu, board)?;
+    let mut lines = vec![
+        "| formula | instructions | cycles |".to_owned(),
+        "| ------- | ------------:| ------:|".to_owned(),
+    ];
+    lines.extend(
+        PRICED
+            .iter()
+            .zip(prices)
+            .map(|(name, [instructions, cycles])| format!("| {name} | {instructions:.1} | {cycles:.1} |")),
+    );
+    Ok(lines.join("\n"))
 }
 
 /// The rows of a group, in the order in which its image prints them.

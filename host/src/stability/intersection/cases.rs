@@ -34,6 +34,7 @@ pub(super) struct Case {
 pub(super) struct Class {
     /// What a row is called.
     pub(super) name: &'static str,
+    pub(super) surface: Surface,
     /// The name of a plot of errors by radius, where radii of all magnitudes are drawn alike.
     pub(super) plot: Option<&'static str>,
     /// Draws one.
@@ -55,16 +56,19 @@ const ULP: f64 = 1.0 / 65_536.0;
 pub(super) const CLASSES: &[Class] = &[
     Class {
         name: "wall, start within",
+        surface: Surface::Wall,
         plot: Some("distance-wall"),
         draw: |draw| within(draw, Surface::Wall, SMALL, WALL),
     },
     Class {
         name: "wall of 5000 and more, start near it",
+        surface: Surface::Wall,
         plot: None,
         draw: near_a_flat_wall,
     },
     Class {
         name: "ball, start without",
+        surface: Surface::Solid,
         plot: Some("distance-ball"),
         draw: |draw| {
             let radius = draw.magnitude(SMALL, FAR / 2.0);
@@ -76,6 +80,7 @@ pub(super) const CLASSES: &[Class] = &[
     },
     Class {
         name: "ball up to 1, from 5000 to 21,600 away",
+        surface: Surface::Solid,
         plot: None,
         draw: |draw| {
             let radius = draw.magnitude(SMALL, 1.0);
@@ -87,6 +92,7 @@ pub(super) const CLASSES: &[Class] = &[
     },
     Class {
         name: "ball, within 4 ulp of tangent",
+        surface: Surface::Solid,
         plot: None,
         draw: |draw| {
             let radius = draw.magnitude(SMALL, FAR / 2.0);
@@ -98,6 +104,7 @@ pub(super) const CLASSES: &[Class] = &[
     },
     Class {
         name: "ball, start 1 to 16 ulp above it",
+        surface: Surface::Solid,
         plot: None,
         draw: |draw| {
             let radius = draw.magnitude(SMALL, FAR / 2.0);
@@ -106,11 +113,13 @@ pub(super) const CLASSES: &[Class] = &[
     },
     Class {
         name: "glass, start within",
+        surface: Surface::Glass,
         plot: None,
         draw: |draw| within(draw, Surface::Glass, SMALL, WALL),
     },
     Class {
         name: "glass, start without",
+        surface: Surface::Glass,
         plot: None,
         draw: |draw| {
             let radius = draw.magnitude(SMALL, WALL / 2.0);
@@ -122,6 +131,7 @@ pub(super) const CLASSES: &[Class] = &[
     },
     Class {
         name: "glass, start on it, inwards",
+        surface: Surface::Glass,
         plot: None,
         draw: |draw| {
             let radius = draw.magnitude(SMALL, WALL);
@@ -130,6 +140,7 @@ pub(super) const CLASSES: &[Class] = &[
     },
     Class {
         name: "wall, start on it, inwards",
+        surface: Surface::Wall,
         plot: None,
         draw: |draw| {
             let radius = draw.magnitude(SMALL, WALL);
@@ -138,6 +149,7 @@ pub(super) const CLASSES: &[Class] = &[
     },
     Class {
         name: "ball, start on it, outwards",
+        surface: Surface::Solid,
         plot: None,
         draw: |draw| {
             let radius = draw.magnitude(SMALL, FAR / 2.0);
@@ -185,16 +197,14 @@ impl Case {
         let meeting = Meeting::of(line, &self.sphere());
         let within = meeting.power >= 0;
         if self.departs {
-            // A start that rounding has put off its surface stands for a point of it.
-            let leaves = self.surface == Surface::Solid || !meeting.is_ahead();
-            return (!leaves).then(|| Truth {
-                distance: if meeting.is_met() {
-                    meeting.far().distance()
-                } else {
-                    meeting.chord()
-                },
-                other: 0.0,
-            });
+            // A start that rounding has put off its surface stands for a point of it, and beyond a wall is solid.
+            return match self.surface {
+                Surface::Solid => None,
+                Surface::Wall => Some(self.surface_at(line, meeting.chord().max(0.0), 0.0)),
+                Surface::Glass => meeting
+                    .is_ahead()
+                    .then(|| self.surface_at(line, meeting.chord(), 0.0)),
+            };
         }
         if !meeting.is_met() {
             return None;
@@ -204,15 +214,27 @@ impl Case {
             Surface::Glass if within => Some(meeting.far()),
             Surface::Glass | Surface::Solid => (!within && meeting.is_ahead()).then(|| meeting.near()),
         };
-        met.map(|root: Root| Truth {
-            distance: root.distance(),
-            other: if root == meeting.far() {
+        met.map(|root: Root| {
+            let other = if root == meeting.far() {
                 meeting.near()
             } else {
                 meeting.far()
-            }
-            .distance(),
+            };
+            self.surface_at(line, root.distance(), other.distance())
         })
+    }
+
+    fn surface_at(&self, line: &Line, distance: f64, other: f64) -> Truth {
+        let sphere = self.sphere();
+        let direction = line.direction.map(|c| c as f64);
+        let along = distance / dot(direction, direction).sqrt();
+        let from_centre = [0, 1, 2].map(|i| (line.start[i] - sphere.centre[i]) as f64 + along * direction[i]);
+        Truth {
+            distance,
+            other,
+            point: [0, 1, 2].map(|i| sphere.centre[i] as f64 + from_centre[i]),
+            normal: from_centre.map(|c| c / sphere.radius as f64),
+        }
     }
 }
 
@@ -223,6 +245,10 @@ pub(super) struct Truth {
     pub(super) distance: f64,
     /// Where the other root is.
     pub(super) other: f64,
+    /// The point, in ulp.
+    pub(super) point: [f64; 3],
+    /// The outward normal there.
+    pub(super) normal: [f64; 3],
 }
 
 /// The record of a sphere as the scene's compiler has it.

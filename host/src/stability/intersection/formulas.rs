@@ -1,12 +1,11 @@
 //! Ways to meet a sphere: the tracer's by profile, and others that it does not keep.
 
-use fixedmath::{I2F30, I16F16, I32F32, root};
+use fixedmath::{I2F30, I16F16};
+use operations::intersection::{Textbook, haines};
 use tracer::arithmetic::{Formats, Mixed};
 use tracer::geometry::sphere::{CoarseSphere, HollowSphere, Reciprocal, SolidSphere, SphereNumbers};
 use tracer::geometry::{Grid, Hit, PrimitiveId, Ray, Shape, Standing};
-use tracer::material::RejectedDisc;
-use tracer::profile::{Paper, Precise, Profile, Quadratic};
-use tracer::random::FullState;
+use tracer::profile::{Paper, Precise, Profile};
 use tracer::scene::{All, Capabilities, Capability, Needs};
 
 use super::cases::{Case, Surface};
@@ -53,13 +52,13 @@ pub(super) const FORMULAS: &[Formula] = &[
     },
     Formula {
         name: "textbook, 2:30 and 32:32",
-        meet: tracers::<TextbookMixed, Close>,
+        meet: tracers::<Textbook, Close>,
         line: Case::line,
         answers: |_| true,
     },
     Formula {
         name: "Haines: distance of centre and ray, c/q",
-        meet: haines,
+        meet: by_haines,
         line: Case::line,
         answers: |_| true,
     },
@@ -67,12 +66,6 @@ pub(super) const FORMULAS: &[Formula] = &[
         name: "`paper`",
         meet: tracers::<Paper, Close>,
         line: coarsely,
-        answers: |_| true,
-    },
-    Formula {
-        name: "`paper`, against the ray in 2:30",
-        meet: tracers::<Paper, Close>,
-        line: Case::line,
         answers: |_| true,
     },
     Formula {
@@ -88,19 +81,6 @@ enum Close {}
 
 impl Needs for Close {
     const NEEDS: Capabilities = Capabilities::ALL.without(Capability::Coarse);
-}
-
-/// The textbook's formula on our formats: what the formula alone is to blame for.
-#[derive(Clone, Copy, Debug)]
-enum TextbookMixed {}
-
-impl Profile for TextbookMixed {
-    const NAME: &'static str = "textbook";
-    const EPSILON: I16F16 = Precise::EPSILON;
-    const QUADRATIC: Quadratic = Quadratic::Textbook;
-    type Numbers = Mixed;
-    type Random = FullState;
-    type Hemisphere = RejectedDisc;
 }
 
 /// The ray with its direction cut to 16:16, as [`Published`](tracer::arithmetic::Published) has it.
@@ -175,33 +155,11 @@ where
     })
 }
 
-/// Haines et al., "Precision Improvements for Ray/Sphere Intersection" (Ray Tracing Gems, 2019), on our formats: the discriminant is
-/// `r^2 - |v - b d|^2`, the root of larger magnitude `q` is a sum, and the other one `c / q`.
-fn haines(case: &Case) -> Option<Answer> {
+/// By Haines' formula, the hit put back on its sphere.
+fn by_haines(case: &Case) -> Option<Answer> {
     let to_centre = [0, 1, 2].map(|i| case.record.centre[i] - case.ray.origin[i]);
-    let projection = Mixed::project(to_centre, case.ray.direction);
-    let b = Mixed::length_of(projection);
-    // From the centre to the nearest point of the ray.
-    let across = [0, 1, 2].map(|i| to_centre[i] - Mixed::scale(b, case.ray.direction[i]));
-    let discriminant = case.record.square - Mixed::dot(across, across);
-    if discriminant < I32F32::ZERO {
-        return None;
-    }
-    let root = root::of_square(discriminant);
-    let power = case.record.square - Mixed::dot(to_centre, to_centre);
-    let q = if b < I16F16::ZERO { b - root } else { b + root };
-    let other = match q.to_bits() {
-        0 => I16F16::ZERO,
-        q => I16F16::from_bits((-power.to_bits() / i64::from(q)) as i32),
-    };
-    let (near, far) = if q < other { (q, other) } else { (other, q) };
-    let epsilon = if case.departs {
-        Precise::EPSILON
-    } else {
-        I16F16::ZERO
-    };
-    let t = if near > epsilon { near } else { far };
-    (t > epsilon).then(|| put_back(case, t))
+    let t = haines(to_centre, case.ray.direction, case.record.square, I16F16::ZERO)?;
+    Some(put_back(case, t))
 }
 
 /// The hit at `t` as `precise` has it: put back on its sphere.

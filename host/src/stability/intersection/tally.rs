@@ -1,9 +1,8 @@
 //! How wrong a formula is over many cases.
 
-use super::cases::{Case, Truth};
+use super::cases::Truth;
 use super::formulas::Answer;
 use crate::stability::draw::dot;
-use crate::stability::exact::Line;
 use crate::stability::table::{figure, share};
 
 /// What columns are called.
@@ -20,6 +19,8 @@ pub(super) const HEAD: [&str; 10] = [
     "worst",
 ];
 
+/// Roots that are no further apart, in ulp, are not told apart.
+const SAME: f64 = 2.0;
 /// Octaves of the radius that are told apart, from the smallest there is: 2^-7 units.
 pub(super) const OCTAVES: usize = 24;
 
@@ -69,8 +70,8 @@ impl Spread {
 }
 
 impl Tally {
-    /// Counts one answer to a case, of which the truth along `line` is known.
-    pub(super) fn add(&mut self, case: &Case, line: &Line, truth: Option<Truth>, answer: Option<Answer>) {
+    /// Counts one answer to a case of a sphere of this radius in ulp.
+    pub(super) fn add(&mut self, radius: i64, truth: Option<Truth>, answer: Option<Answer>) {
         let Some(truth) = truth else {
             self.misses += 1;
             self.false_hits += u64::from(answer.is_some());
@@ -82,25 +83,16 @@ impl Tally {
             return;
         };
         let error = (answer.distance - truth.distance).abs();
-        if error > (answer.distance - truth.other).abs() {
+        if error > SAME && error > (answer.distance - truth.other).abs() {
             self.wrong_roots += 1;
             return;
         }
-        let sphere = case.sphere();
-        let direction = line.direction.map(|c| c as f64);
-        let along = truth.distance / dot(direction, direction).sqrt();
-        let from_centre = [0, 1, 2].map(|i| (line.start[i] - sphere.centre[i]) as f64 + along * direction[i]);
-        let off = [0, 1, 2].map(|i| answer.point[i] - sphere.centre[i] as f64 - from_centre[i]);
-        let turned = [0, 1, 2].map(|i| answer.normal[i] - from_centre[i] / sphere.radius as f64);
+        let off = [0, 1, 2].map(|i| answer.point[i] - truth.point[i]);
+        let turned = [0, 1, 2].map(|i| answer.normal[i] - truth.normal[i]);
         self.distance.add(error);
         self.point.add(dot(off, off).sqrt());
         self.normal.add(dot(turned, turned).sqrt() * f64::from(1 << 30));
-        self.by_radius[octave(sphere.radius)].add(error);
-    }
-
-    /// Whether anything was counted.
-    pub(super) fn has_cases(&self) -> bool {
-        self.misses + self.hits > 0
+        self.by_radius[octave(radius)].add(error);
     }
 
     /// Adds another's counts.

@@ -8,11 +8,15 @@ use tracer::profile::Profile;
 use tracer::scene::{Capabilities, Capability, Needs};
 
 use crate::scene::{self, Material, sphere_record, vast_record};
-use crate::stability::draw::{combine, dot, ulps};
+use crate::stability::draw::ulps;
 use crate::stability::exact::{Line, Meeting, Sphere};
+use crate::stability::vast::Bent;
 
 /// Formats whose numbers double precision holds.
-pub(super) trait Told: Formats<Length: Into<f64>, Unit: Into<f64>> {}
+pub(in crate::stability) trait Told:
+    Formats<Length: Into<f64>, Unit: Into<f64>>
+{
+}
 
 impl<N: Formats<Length: Into<f64>, Unit: Into<f64>>> Told for N {}
 
@@ -28,7 +32,7 @@ const COARSEST: Grid = Grid::new(16);
 
 /// One shape.
 #[derive(Clone, Debug)]
-pub(super) enum Body {
+pub(in crate::stability) enum Body {
     Wall(HollowSphere),
     /// A ball; `two_sided` where rays start within although nothing goes through its surface.
     Ball {
@@ -73,6 +77,14 @@ impl Body {
         Self::Vast(vast_record(sphere, middle, origin, MaterialId::new(0)))
     }
 
+    /// The vast sphere, if it is one.
+    pub(in crate::stability) fn bent(&self) -> Option<&VastSphere> {
+        match self {
+            Self::Vast(vast) => Some(vast),
+            _ => None,
+        }
+    }
+
     /// Centre and radius in units; none of a vast one.
     pub(super) fn sphere(&self) -> Option<([f64; 3], f64)> {
         let Sphere { centre, radius } = self.exact()?;
@@ -80,7 +92,7 @@ impl Body {
     }
 
     /// What the tracer says that a ray meets nearer than `t_max`.
-    pub(super) fn closest<P: Profile>(
+    pub(in crate::stability) fn closest<P: Profile>(
         &self,
         ray: &Ray<P::Numbers>,
         departs: bool,
@@ -99,7 +111,7 @@ impl Body {
     }
 
     /// What the tracer makes of a hit.
-    pub(super) fn interaction<P: Profile>(
+    pub(in crate::stability) fn interaction<P: Profile>(
         &self,
         ray: &Ray<P::Numbers>,
         departs: bool,
@@ -144,10 +156,7 @@ impl Body {
     /// The other end of the chord that a line starts at one end of, in ulp: not above 0 where the line leads out of the sphere.
     pub(super) fn chord(&self, line: &Line) -> f64 {
         match (self, self.exact()) {
-            (Self::Vast(vast), _) => {
-                let (_, slope, curvature) = height_slope_curvature(vast, line);
-                2.0 * slope / curvature
-            }
+            (Self::Vast(vast), _) => Bent::of(vast, line).chord(),
             (_, Some(sphere)) => Meeting::of(line, &sphere).chord(),
             (_, None) => f64::NAN,
         }
@@ -156,21 +165,16 @@ impl Body {
     /// Where a line that starts on the side of a wall or ball that rays are on first meets it.
     pub(super) fn first(&self, line: &Line) -> Start {
         if let Self::Vast(vast) = self {
-            let (height, slope, curvature) = height_slope_curvature(vast, line);
-            let square = slope * slope + 2.0 * curvature * height;
-            return if height <= 0.0 {
+            let bent = Bent::of(vast, line);
+            return if bent.height <= 0.0 {
                 Start::Beyond
-            } else if square < 0.0 || slope > 0.0 && curvature < 0.0 {
-                Start::Misses
             } else {
-                Start::Meets(Crossing {
-                    distance: if slope > 0.0 {
-                        (slope + square.sqrt()) / curvature
-                    } else {
-                        2.0 * height / (square.sqrt() - slope)
-                    },
-                    other: f64::INFINITY,
-                    depth: square / (2.0 * curvature.abs()),
+                bent.goes_under().map_or(Start::Misses, |distance| {
+                    Start::Meets(Crossing {
+                        distance,
+                        other: f64::INFINITY,
+                        depth: bent.depth(),
+                    })
                 })
             };
         }
@@ -223,26 +227,9 @@ pub(super) struct Crossing {
 }
 
 /// A ray in ulp and 2^-30, exactly.
-pub(super) fn line_of<N: Told>(ray: &Ray<N>) -> Line {
+pub(in crate::stability) fn line_of<N: Told>(ray: &Ray<N>) -> Line {
     Line {
         start: ray.origin.map(|c| (c.into() * 65_536.0) as i64),
         direction: ray.direction.map(|c| (c.into() * f64::from(1 << 30)) as i64),
     }
-}
-
-/// Height in ulp, slope, and curvature per ulp, as [`tracer::geometry::sphere`] has them, in double precision: of lengths up to 2^31
-/// ulp within 2^-20 of one.
-fn height_slope_curvature(vast: &VastSphere, line: &Line) -> (f64, f64, f64) {
-    let normal = vast.normal.map(f64::from);
-    let length = dot(normal, normal).sqrt();
-    let normal = normal.map(|c| c / length);
-    let pole = ulps(vast.pole);
-    let above = [0, 1, 2].map(|i| (line.start[i] - pole[i]) as f64);
-    let direction = line.direction.map(|c| c as f64);
-    let length = dot(direction, direction).sqrt();
-    let direction = direction.map(|c| c / length);
-    let curvature = f64::from(vast.bend.curvature) * 2f64.powi(-44 - 16);
-    let height = dot(normal, above) - curvature / 2.0 * dot(above, above);
-    let slope = dot(direction, combine(1.0, normal, -curvature, above));
-    (height, slope, curvature)
 }

@@ -8,17 +8,20 @@ use super::body::{Body, Start, line_of, sphere};
 use crate::scene::{Material, REACH};
 use crate::stability::draw::{Draw, combine, length, unit};
 
+/// A body, and a ray that may meet it.
+pub(in crate::stability) type Drawn = (Body, Ray<Mixed>);
+
 /// A shape with a material, and from which side rays come.
 pub(super) struct Class {
     /// What rows are called.
     pub(super) name: &'static str,
     pub(super) material: Material,
     /// Draws a body of it, and a ray that may meet it.
-    pub(super) draw: fn(&mut Draw, &Material) -> (Body, Ray<Mixed>),
+    pub(super) draw: fn(&mut Draw, &Material) -> Drawn,
 }
 
 const GREY: [f64; 3] = [0.5; 3];
-const DIFFUSE: Material = Material::Diffuse(GREY);
+pub(in crate::stability) const DIFFUSE: Material = Material::Diffuse(GREY);
 const MIRROR: Material = Material::Mirror(GREY);
 const GLASS: Material = Material::Glass {
     tint: GREY,
@@ -103,33 +106,33 @@ const ROOM: f64 = 300.0;
 /// An ulp, in units.
 pub(super) const ULP: f64 = 1.0 / 65_536.0;
 
-fn wall(draw: &mut Draw, material: &Material) -> (Body, Ray<Mixed>) {
+fn wall(draw: &mut Draw, material: &Material) -> Drawn {
     let radius = draw.magnitude(SMALL, LARGE);
     round(draw, material, radius, true, false, true)
 }
 
-fn ball(draw: &mut Draw, material: &Material) -> (Body, Ray<Mixed>) {
+fn ball(draw: &mut Draw, material: &Material) -> Drawn {
     let radius = draw.magnitude(SMALL, LARGE);
     round(draw, material, radius, false, false, false)
 }
 
-fn glass(draw: &mut Draw, material: &Material) -> (Body, Ray<Mixed>) {
+fn glass(draw: &mut Draw, material: &Material) -> Drawn {
     let radius = draw.magnitude(SMALL, LARGE);
     let within = is_even(draw);
     round(draw, material, radius, false, false, within)
 }
 
-fn two_sided(draw: &mut Draw, material: &Material) -> (Body, Ray<Mixed>) {
+fn two_sided(draw: &mut Draw, material: &Material) -> Drawn {
     let radius = draw.magnitude(SMALL, LARGE);
     let within = is_even(draw);
     round(draw, material, radius, false, true, within)
 }
 
-fn vast_wall(draw: &mut Draw, material: &Material) -> (Body, Ray<Mixed>) {
+pub(in crate::stability) fn vast_wall(draw: &mut Draw, material: &Material) -> Drawn {
     vast(draw, material, true)
 }
 
-fn vast_ball(draw: &mut Draw, material: &Material) -> (Body, Ray<Mixed>) {
+pub(in crate::stability) fn vast_ball(draw: &mut Draw, material: &Material) -> Drawn {
     vast(draw, material, false)
 }
 
@@ -164,7 +167,7 @@ fn round(
     hollow: bool,
     two_sided: bool,
     within: bool,
-) -> (Body, Ray<Mixed>) {
+) -> Drawn {
     loop {
         let centre = [(); 3].map(|()| draw.number(-300.0, 300.0));
         let outward = draw.direction();
@@ -183,7 +186,7 @@ fn round(
 }
 
 /// A vast sphere, and a ray near it.
-fn vast(draw: &mut Draw, material: &Material, hollow: bool) -> (Body, Ray<Mixed>) {
+fn vast(draw: &mut Draw, material: &Material, hollow: bool) -> Drawn {
     loop {
         let radius = draw.magnitude(VAST[0], VAST[1]);
         let to_centre = draw.direction();

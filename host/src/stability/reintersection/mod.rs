@@ -18,8 +18,10 @@ use tracer::profile::{Paper, Precise, Profile};
 use tracer::random::Random;
 use tracer::scene::All;
 
-use self::body::{Body, Start, Told, line_of, sphere};
+pub(super) use self::body::{Body, Told, line_of};
+use self::body::{Start, sphere};
 use self::classes::{CLASSES, Class};
+pub(super) use self::classes::{DIFFUSE, Drawn, vast_ball, vast_wall};
 use self::neighbours::{KINDS, Place, neighbour};
 use self::tables::{faults, neighbours_passed, self_hits};
 use self::tally::{SelfHits, Tally, bin};
