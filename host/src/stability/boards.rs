@@ -33,7 +33,9 @@ struct Flags {
 
 fn measure(effort: &Effort) -> Result<Findings, Error> {
     let mut files = hard::files()?;
-    files.truncate(effort.of(100 * files.len() as u64).min(files.len() as u64) as usize);
+    if effort.is_quick() {
+        files.truncate(2);
+    }
     effort.expect((files.len() * Arithmetic::ALL.len() * Board::ALL.len()) as u64);
     let units = format!("{}x{} pixels of {SPP} samples.", SIZE[0], SIZE[1]);
     let mut head = vec!["scene"];

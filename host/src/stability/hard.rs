@@ -247,3 +247,40 @@ fn arithmetic(paired: &Paired) -> Result<Share, Error> {
         error: found.bias_standard_error.unwrap_or_default(),
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use indicatif::ProgressBar;
+
+    use super::*;
+
+    /// Proof that this part can fail: figures that are not the scene's, and a bright picture of a dark scene.
+    #[test]
+    fn planted_faults_are_found() {
+        let effort = Effort::new(true, ProgressBar::hidden());
+        let file = workspace::file(FOLDER).unwrap().join("furnace-diffuse.toml");
+        let found = Found::of(&effort, &Scene::load(&file).unwrap(), 16).unwrap();
+        let faults = |mean: f64| {
+            let expected = Expected {
+                mean: [mean; 3],
+                standard_error: 0.0,
+            };
+            found.faults(&expected).unwrap().join("; ")
+        };
+        assert_eq!(faults(1.0), "");
+        assert!(faults(1.005).contains("of what is expected"));
+        assert!(faults(0.0).contains("not dark"));
+    }
+
+    #[test]
+    fn something_is_expected_of_every_scene() {
+        let folder = workspace::file(FOLDER).unwrap();
+        let expected = fs::read_to_string(folder.join("expected.json")).unwrap();
+        let expected: BTreeMap<String, Expected> = serde_json::from_str(&expected).unwrap();
+        let names = files()
+            .unwrap()
+            .into_iter()
+            .map(|file| file.file_stem().unwrap().to_str().unwrap().to_owned());
+        assert!(names.eq(expected.into_keys()));
+    }
+}
