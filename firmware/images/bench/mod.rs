@@ -32,6 +32,7 @@ struct Printer {
 }
 
 /// Prints the rows of a group and ends the program.
+#[allow(dead_code, reason = "an image prints a group or the intersections")]
 #[inline(always)]
 pub(crate) fn print(group: Group) -> ! {
     let cases = group.transcript_cases();
@@ -40,6 +41,7 @@ pub(crate) fn print(group: Group) -> ! {
 }
 
 /// Prints what the formulas that meet a sphere cost, and ends the program. They have no transcript.
+#[allow(dead_code, reason = "an image prints a group or the intersections")]
 #[inline(always)]
 pub(crate) fn print_intersections() -> ! {
     let mut printer = Printer { row: 0, cases: 0 };
