@@ -14,7 +14,7 @@ use wire::{
 };
 
 /// Where the scene texts are, which are seeds as they are.
-pub(super) const SCENES: [&str; 2] = ["scenes", "tests/scenes"];
+pub(super) const SCENES: [&str; 4] = ["scenes", "scenes/extra", "scenes/hard", "tests/scenes"];
 
 /// Writes the seeds of each target into a folder of its name.
 pub(super) fn write(folder: &Path) -> anyhow::Result<()> {
@@ -25,7 +25,10 @@ pub(super) fn write(folder: &Path) -> anyhow::Result<()> {
     seed(folder, "capture", "packets", &capture(&packets))?;
     for scenes in SCENES {
         for file in fs::read_dir(workspace::file(scenes)?)? {
-            scene(folder, &file?.path())?;
+            let path = file?.path();
+            if path.extension().is_some_and(|extension| extension == "toml") {
+                scene(folder, &path)?;
+            }
         }
     }
     picture(folder)?;

@@ -328,7 +328,7 @@ mod tests {
     /// Proof that this part can fail: a picture that is darker by a thousandth, and one of a wrong tile.
     #[test]
     fn planted_faults_are_found() {
-        let effort = Effort::new(true, ProgressBar::hidden());
+        let effort = Effort::new(100, ProgressBar::hidden());
         let scene = Scene::load(&workspace::file("scenes/cornell.toml").unwrap()).unwrap();
         let compiled = compile(&scene, SIZE[0], SIZE[1]);
         let rendered = reference(&effort, &scene, 16);

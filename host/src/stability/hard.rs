@@ -75,7 +75,7 @@ pub(super) fn files() -> Result<Vec<PathBuf>, Error> {
 }
 
 fn measure(effort: &Effort) -> Result<Findings, Error> {
-    let spp = effort.of(SPP).next_multiple_of(64) as u32;
+    let spp = effort.of(SPP).next_multiple_of(16) as u32;
     let expected = fs::read_to_string(workspace::file(FOLDER)?.join("expected.json"))?;
     let expected: BTreeMap<String, Expected> = serde_json::from_str(&expected)?;
     let files = files()?;
@@ -257,7 +257,7 @@ mod tests {
     /// Proof that this part can fail: figures that are not the scene's, and a bright picture of a dark scene.
     #[test]
     fn planted_faults_are_found() {
-        let effort = Effort::new(true, ProgressBar::hidden());
+        let effort = Effort::new(100, ProgressBar::hidden());
         let file = workspace::file(FOLDER).unwrap().join("furnace-diffuse.toml");
         let found = Found::of(&effort, &Scene::load(&file).unwrap(), 16).unwrap();
         let faults = |mean: f64| {

@@ -23,24 +23,28 @@ pub struct Part {
 
 /// How much work a part may do, and who watches.
 pub struct Effort {
-    quick: bool,
+    divisor: u64,
     bar: ProgressBar,
 }
 
 impl Effort {
-    /// The full work, or a hundredth of it where it is to be `quick`. The bar is told of work done.
-    pub fn new(quick: bool, bar: ProgressBar) -> Self {
-        Self { quick, bar }
+    /// One of so many parts of the full work. The bar is told of work done.
+    ///
+    /// # Panics
+    /// If there are no parts.
+    pub fn new(divisor: u64, bar: ProgressBar) -> Self {
+        assert!(divisor > 0, "no part of the work");
+        Self { divisor, bar }
     }
 
-    /// Whether only a hundredth is wanted.
+    /// Whether only a part is wanted.
     pub fn is_quick(&self) -> bool {
-        self.quick
+        self.divisor > 1
     }
 
     /// What is to be done of `full` work: at least 1.
     pub fn of(&self, full: u64) -> u64 {
-        if self.quick { (full / 100).max(1) } else { full }
+        (full / self.divisor).max(1)
     }
 
     /// So much more work is ahead, in whatever unit the part counts.

@@ -71,8 +71,12 @@ impl Linear<'_> {
     /// The nearest hit of all hollow spheres, kept apart from what happens more often.
     #[cold]
     #[inline(never)]
-    fn closest_wall<P: Profile>(&self, ray: &Ray<P::Numbers>, epsilon: Length<P>) -> Hit<P::Numbers> {
-        self.closest::<P, Walls>(ray, epsilon)
+    fn closest_wall<P: Profile, F: Needs>(
+        &self,
+        ray: &Ray<P::Numbers>,
+        epsilon: Length<P>,
+    ) -> Hit<P::Numbers> {
+        self.closest::<P, Walls<F>>(ray, epsilon)
     }
 
     /// The surface at a hit; none where there is no such primitive.
@@ -122,9 +126,9 @@ impl<F: Needs> Needs for Within<F> {
 }
 
 /// The walls.
-struct Walls;
+struct Walls<F>(PhantomData<F>);
 
-impl Needs for Walls {
+impl<F: Needs> Needs for Walls<F> {
     const NEEDS: Capabilities = Capabilities::of(&[Capability::Hollow]);
 }
 
@@ -227,7 +231,7 @@ impl Aggregate for Linear<'_> {
                 t: exit.t,
                 primitive: exit.wall.primitive,
             },
-            None => self.closest_wall::<P>(ray, epsilon),
+            None => self.closest_wall::<P, F>(ray, epsilon),
         };
         let hit = self.closest_of::<P, Within<F>>(ray, epsilon, wall);
         match exit {

@@ -250,7 +250,7 @@ mod tests {
     /// Proof that faults are found: an epsilon of 16 ulp, and all of the published ones.
     #[test]
     fn what_goes_wrong_is_counted() {
-        let effort = Effort::new(false, indicatif::ProgressBar::hidden());
+        let effort = Effort::new(1, indicatif::ProgressBar::hidden());
         let columns = [
             columns::<Precise>(&effort, 20_000),
             columns::<Paper>(&effort, 20_000),

@@ -70,7 +70,7 @@ impl Shape for VastSphere {
     ) -> Option<Length<P>> {
         match P::QUADRATIC {
             Quadratic::Textbook => self.textbook::<P>(ray, epsilon, t_max),
-            Quadratic::Power => self.closely::<P>(ray, standing, self.has_inside::<F>(), epsilon, t_max),
+            Quadratic::Power => self.closely::<P, F>(ray, standing, epsilon, t_max),
         }
     }
 
@@ -129,12 +129,11 @@ impl VastSphere {
     }
 
     /// Where a ray hits it, by [`Quadratic::Power`]: from above where it goes under, and from within a ball of glass where it
-    /// comes up. What the image needs is left out of its type, or an image would have it twice: for rooms and for what is within.
-    fn closely<P: Profile>(
+    /// comes up.
+    fn closely<P: Profile, F: Needs>(
         &self,
         ray: &Ray<P::Numbers>,
         standing: Standing,
-        has_inside: bool,
         epsilon: Length<P>,
         t_max: Length<P>,
     ) -> Option<Length<P>> {
@@ -144,6 +143,7 @@ impl VastSphere {
         } else {
             self.height_and_slope::<P>(ray)
         };
+        let has_inside = self.has_inside::<F>();
         let below = has_inside
             && if standing.departs {
                 slope < P::Numbers::ZERO
