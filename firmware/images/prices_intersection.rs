@@ -4,7 +4,24 @@
 
 mod bench;
 
+use bench::{Itself, Printer};
+use operations::intersection;
+
+/// All formulas. They have no transcript.
+struct Intersections;
+
+impl bench::Prices for Intersections {
+    fn cases(&self) -> u32 {
+        0
+    }
+
+    #[inline(always)]
+    fn show(self, printer: &mut Printer) {
+        intersection::show(&mut Itself::start(), |price| printer.line(price, 0, 0));
+    }
+}
+
 #[board::entry]
 fn start() -> ! {
-    bench::print_intersections()
+    bench::print(Intersections)
 }

@@ -4,13 +4,19 @@ use board::Core;
 use node::{Clock as _, Text};
 use operations::price::{Bench, Price, called, price};
 use operations::transcript::transcript;
-use operations::{Group, Variant, Visitor, intersection};
+use operations::{Group, Variant, Visitor};
 use panic_halt as _;
 use runtime::clock::Clock;
 use runtime::{Board, ExitCode};
 
 /// The core that measures itself.
-struct Itself(Clock<Core>);
+pub(crate) struct Itself(Clock<Core>);
+
+impl Itself {
+    pub(crate) fn start() -> Self {
+        Self(Clock::start())
+    }
+}
 
 impl Bench for Itself {
     fn ticks(&mut self) -> u32 {
@@ -26,40 +32,51 @@ impl Bench for Itself {
 }
 
 /// Prints what it measures.
-struct Printer {
+pub(crate) struct Printer {
     row: u32,
     cases: u32,
 }
 
-/// Prints the rows of a group and ends the program.
-#[allow(dead_code, reason = "an image prints a group or the intersections")]
-#[inline(always)]
-pub(crate) fn print(group: Group) -> ! {
-    let cases = group.transcript_cases();
-    group.show(&mut Printer { row: 0, cases });
-    Core::exit(ExitCode::Success)
+/// What an image measures.
+pub(crate) trait Prices {
+    /// Inputs of each transcript; 0 where there is none.
+    fn cases(&self) -> u32;
+    /// Prints a row for each variant.
+    fn show(self, printer: &mut Printer);
 }
 
-/// Prints what the formulas that meet a sphere cost, and ends the program. They have no transcript.
-#[allow(dead_code, reason = "an image prints a group or the intersections")]
+impl Prices for Group {
+    #[inline(always)]
+    fn cases(&self) -> u32 {
+        self.transcript_cases()
+    }
+
+    #[inline(always)]
+    fn show(self, printer: &mut Printer) {
+        Group::show(self, printer);
+    }
+}
+
+/// Prints the rows and ends the program.
 #[inline(always)]
-pub(crate) fn print_intersections() -> ! {
-    let mut printer = Printer { row: 0, cases: 0 };
-    intersection::show(&mut Itself(Clock::start()), |price| printer.line(price, 0, 0));
+pub(crate) fn print(prices: impl Prices) -> ! {
+    let cases = prices.cases();
+    prices.show(&mut Printer { row: 0, cases });
     Core::exit(ExitCode::Success)
 }
 
 impl Visitor for Printer {
     #[inline(never)]
     fn visit<V: Variant>(&mut self) {
-        let price = price::<V>(&mut Itself(Clock::start()));
+        let price = price::<V>(&mut Itself::start());
         let hash = transcript::<V>(self.cases);
         self.line(price, hash, called::<V> as *const () as u32);
     }
 }
 
 impl Printer {
-    fn line(&mut self, price: Price, hash: u64, address: u32) {
+    /// One row. Without a transcript its hash is 0, and so is the address of what is not called.
+    pub(crate) fn line(&mut self, price: Price, hash: u64, address: u32) {
         let mut line = Text::from("row");
         for word in [
             self.row,

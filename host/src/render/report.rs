@@ -246,17 +246,16 @@ impl ErrorFigures {
 impl LockstepError {
     /// How far `picture` is from its double.
     pub fn between(picture: &Picture, paired: &Paired) -> Result<Self, CompareError> {
-        let image = |variance| Estimate {
+        let (noisy, double) = paired.difference();
+        let noisy = Estimate {
             picture: picture.clone(),
-            variance,
-            spp: None,
+            ..noisy
         };
-        let double = Estimate {
+        let exact = Estimate {
             variance: None,
-            ..paired.double.clone()
+            ..noisy.clone()
         };
-        let plain = compare(&image(None), &double)?;
-        let noisy = compare(&image(Some(paired.variance.clone())), &double)?;
+        let (plain, noisy) = (compare(&exact, &double)?, compare(&noisy, &double)?);
         Ok(Self {
             bias: plain.bias,
             bias_standard_error: noisy.bias_standard_error,

@@ -2,14 +2,14 @@
 
 use tracer::profile::{Paper, Precise, Profile};
 
-use super::part::plan;
+use super::part::{SURE, plan, reference};
 use super::table::figure;
 use super::{Effort, Error, Findings, Part, Plot, Table};
 use crate::firmware::arithmetic::Arithmetic;
 use crate::image::picture::{Estimate, Picture, displayed};
-use crate::oracle::compare::{Comparison, compare};
+use crate::oracle::compare::{Comparison, Tile, compare};
 use crate::oracle::lockstep::{self, Paired};
-use crate::oracle::reference::{self, Rendered};
+use crate::oracle::reference::Rendered;
 use crate::platform::workspace;
 use crate::scene::{CompiledScene, Scene, compile};
 
@@ -39,8 +39,6 @@ const PICTURE_BIAS: f64 = 1e-4;
 const TILE_BIAS: f64 = 2e-3;
 /// And its floor: a quarter of a level of 8 bits on the display.
 const FLOOR: f64 = 0.25;
-/// Standard errors by which a bound must be passed to be taken for broken: by chance, once in 30,000 times.
-const SURE: f64 = 4.0;
 
 const ERRORS: &str = "Error: root of the mean squared difference from the reference, in radiance, noise and all, at so many samples a pixel. \
     Slope: of its logarithm over that of the samples, from 64 on; noise alone has -1/2. \
@@ -83,7 +81,7 @@ fn measure(effort: &Effort) -> Result<Findings, Error> {
     for (file, plot_name) in SCENES {
         let scene = Scene::load(&workspace::file(file)?)?;
         let compiled = compile(&scene, SIZE[0], SIZE[1]);
-        let rendered = reference(effort, &scene, most);
+        let rendered = reference(effort, &scene, SIZE, most);
         let precise = course::<Precise>(effort, Arithmetic::Precise, &compiled, &rendered, most);
         let paper = course::<Paper>(effort, Arithmetic::Paper, &compiled, &rendered, most / 4);
         for (name, course) in [("`precise`", &precise), ("`paper`", &paper)] {
@@ -117,21 +115,6 @@ fn power_of_4(samples: u64) -> u32 {
 /// 4, 16, ... samples a pixel up to `most`.
 fn counts(most: u32) -> impl Iterator<Item = u32> {
     (1..=most.ilog(4)).map(|power| 4u32.pow(power))
-}
-
-fn reference(effort: &Effort, scene: &Scene, spp: u32) -> Rendered {
-    let job = reference::Job {
-        width: SIZE[0],
-        height: SIZE[1],
-        spp,
-        termination: reference::Termination::Roulette,
-        seed: 1,
-    };
-    let done = std::sync::atomic::AtomicU64::new(0);
-    reference::render(scene, &job, |samples| {
-        let before = done.fetch_max(samples, std::sync::atomic::Ordering::Relaxed);
-        effort.done(samples.saturating_sub(before));
-    })
 }
 
 /// How a profile's pictures get better.
@@ -292,7 +275,7 @@ fn biases_row(file: &str, course: &Course, rendered: &Rendered) -> Result<(Vec<S
         bias.abs() - SURE * noise <= PICTURE_BIAS,
         "the bias is beyond 0.01 %",
     );
-    let off = |tile: &crate::oracle::compare::Tile| tile.bias.abs() - SURE * tile.bias_noise > TILE_BIAS;
+    let off = |tile: &Tile| tile.bias.abs() - SURE * tile.bias_noise > TILE_BIAS;
     expect(
         !lockstep.tiles.tiles.iter().any(off),
         "a tile's bias is beyond 0.2 %",
@@ -331,7 +314,7 @@ mod tests {
         let effort = Effort::new(100, ProgressBar::hidden());
         let scene = Scene::load(&workspace::file("scenes/cornell.toml").unwrap()).unwrap();
         let compiled = compile(&scene, SIZE[0], SIZE[1]);
-        let rendered = reference(&effort, &scene, 16);
+        let rendered = reference(&effort, &scene, SIZE, 16);
         let course = course::<Precise>(&effort, Arithmetic::Precise, &compiled, &rendered, 16);
         let faults = |change: &dyn Fn(usize, f64) -> f64| {
             let pixels = course.last.picture.picture.pixels().iter().enumerate();

@@ -95,7 +95,8 @@ fn add<P: Explicable>(
 ) {
     let found = explain::<P>(compiled, plan, |samples| effort.done(samples));
     let title = format!("`{file}`, `{}`, {} paths", P::NAME, found.samples);
-    let mut table = Table::new(&title, UNITS, &HEAD);
+    let units = if findings.tables.is_empty() { UNITS } else { "" };
+    let mut table = Table::new(&title, units, &HEAD);
     for cause in Cause::ALL {
         if found.share(cause).paths > 0 {
             table.push(row(&found, cause));

@@ -3,22 +3,22 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicU64, Ordering};
 
 use serde::Deserialize;
 use tracer::profile::{Paper, Precise};
 
-use super::part::plan;
+use super::part::{SURE, plan, reference};
 use super::sheet::Panel;
 use super::table::figure;
 use super::{Effort, Error, Findings, Part, Sheet, Table};
 use crate::firmware::arithmetic::Arithmetic;
-use crate::oracle::compare::compare;
+use crate::image::picture::Picture;
+use crate::oracle::compare::{Tiles, compare};
 use crate::oracle::direct;
 use crate::oracle::lockstep::{self, Paired};
-use crate::oracle::reference::{self, Rendered};
+use crate::oracle::reference::Rendered;
 use crate::platform::workspace;
-use crate::scene::{CompiledScene, Scene, compile};
+use crate::scene::{Scene, compile};
 
 /// The part.
 pub(super) const PART: Part = Part {
@@ -34,8 +34,6 @@ const SPP: u64 = 4096;
 /// What `precise` must keep to, as a share of a picture's mean: its bias from double precision, and what a furnace may lose or gain.
 const BIAS: f64 = 1e-4;
 const ENERGY: f64 = 2e-4;
-/// Standard errors by which a bound must be passed to be taken for broken: by chance, once in 30,000 times.
-const SURE: f64 = 4.0;
 /// Pictures in a row of the sheet.
 const ROW: usize = 5;
 
@@ -88,14 +86,10 @@ fn measure(effort: &Effort) -> Result<Findings, Error> {
         let expected = expected.get(&scene.name);
         let expected = expected.ok_or_else(|| format!("{}: expected.json says nothing of it", scene.name))?;
         let found = Found::of(effort, &scene, spp)?;
-        table.push(found.row(&scene.name, expected)?);
-        faults.extend(
-            found
-                .faults(expected)?
-                .into_iter()
-                .map(|fault| format!("{}: {fault}", scene.name)),
-        );
-        panels.push(Panel::picture(scene.name, &found.precise.picture.picture));
+        table.push(found.row(&scene.name, expected));
+        let faults_of_it = found.faults(expected).into_iter();
+        faults.extend(faults_of_it.map(|fault| format!("{}: {fault}", scene.name)));
+        panels.push(Panel::picture(scene.name, &found.precise.picture));
     }
     Ok(Findings {
         tables: vec![table],
@@ -111,13 +105,26 @@ fn measure(effort: &Effort) -> Result<Findings, Error> {
 
 /// A scene by both profiles.
 struct Found {
-    precise: Paired,
-    paper: Paired,
-    rendered: Rendered,
+    precise: Rendering,
+    paper: Rendering,
+    /// Sums that packets could not hold, in a picture of 64 samples, as many as a unit has.
     saturated: u64,
 }
 
-/// A share of a mean and its standard error.
+/// A scene by one profile.
+struct Rendering {
+    picture: Picture,
+    /// Mean of all pixels and channels.
+    radiance: f64,
+    /// Its standard error, as a share of the reference.
+    noise: f64,
+    /// The bias from the same samples in double precision.
+    arithmetic: Share,
+    /// Tile by tile in the independent reference.
+    tiles: Tiles,
+}
+
+/// A share of a mean, and its standard error.
 struct Share {
     value: f64,
     error: f64,
@@ -126,126 +133,116 @@ struct Share {
 impl Found {
     fn of(effort: &Effort, scene: &Scene, spp: u32) -> Result<Self, Error> {
         let compiled = compile(scene, SIZE[0], SIZE[1]);
-        let ours = plan(Arithmetic::Precise, &compiled, SIZE, spp);
-        let published = plan(Arithmetic::Paper, &compiled, SIZE, spp / 4);
+        let plan = |arithmetic, spp| plan(arithmetic, &compiled, SIZE, spp);
+        let done = |samples| effort.done(samples);
+        let precise = lockstep::render::<Precise>(&compiled, &plan(Arithmetic::Precise, spp), done);
+        let paper = lockstep::render::<Paper>(&compiled, &plan(Arithmetic::Paper, spp / 4), done);
+        let rendered = reference(effort, scene, SIZE, spp);
+        let film = direct::film::<Precise>(&compiled, &plan(Arithmetic::Precise, 64));
         Ok(Self {
-            precise: lockstep::render::<Precise>(&compiled, &ours, |samples| effort.done(samples)),
-            paper: lockstep::render::<Paper>(&compiled, &published, |samples| effort.done(samples)),
-            rendered: Self::reference(effort, scene, spp),
-            saturated: Self::saturated(&compiled),
+            precise: Rendering::of(&precise, &rendered)?,
+            paper: Rendering::of(&paper, &rendered)?,
+            saturated: film.saturated(),
         })
     }
 
-    fn reference(effort: &Effort, scene: &Scene, spp: u32) -> Rendered {
-        let job = reference::Job {
-            width: SIZE[0],
-            height: SIZE[1],
-            spp,
-            termination: reference::Termination::Roulette,
-            seed: 1,
+    fn row(&self, name: &str, expected: &Expected) -> Vec<String> {
+        let is_exact = if expected.standard_error == 0.0 {
+            "exactly "
+        } else {
+            ""
         };
-        let done = AtomicU64::new(0);
-        reference::render(scene, &job, |samples| {
-            let before = done.fetch_max(samples, Ordering::Relaxed);
-            effort.done(samples.saturating_sub(before));
-        })
-    }
-
-    /// Sums that packets could not hold, in a picture of 64 samples, as many as a unit has.
-    fn saturated(compiled: &CompiledScene) -> u64 {
-        let plan = plan(Arithmetic::Precise, compiled, SIZE, 64);
-        direct::film::<Precise>(compiled, &plan).saturated()
-    }
-
-    fn off(&self, paired: &Paired, expected: &Expected) -> Result<Share, Error> {
-        let picture = self.rendered.pooled_noise(paired.picture.clone());
-        let noise = compare(&picture, &self.rendered.estimate)?
-            .standard_error
-            .unwrap_or_default();
-        let mean: f64 = picture.picture.mean().ok_or("no picture")?.iter().sum();
-        let level: f64 = expected.mean.iter().sum();
-        if level == 0.0 {
-            return Ok(Share {
-                value: mean,
-                error: 0.0,
-            });
-        }
-        Ok(Share {
-            value: mean / level - 1.0,
-            error: noise.hypot(expected.standard_error),
-        })
-    }
-
-    fn row(&self, name: &str, expected: &Expected) -> Result<Vec<String>, Error> {
-        let text = |share: &Share| format!("{:+.4} ± {:.4}", 100.0 * share.value, 100.0 * share.error);
-        let level = expected.mean.iter().sum::<f64>() / 3.0;
-        Ok(vec![
+        vec![
             format!("`{name}`"),
-            format!(
-                "{}{}",
-                if expected.standard_error == 0.0 {
-                    "exactly "
-                } else {
-                    ""
-                },
-                figure(level)
-            ),
-            text(&self.off(&self.precise, expected)?),
-            text(&arithmetic(&self.precise)?),
-            format!("{:+.2}", self.tiles()?.0),
-            text(&self.off(&self.paper, expected)?),
-            text(&arithmetic(&self.paper)?),
-        ])
-    }
-
-    /// The largest z-score, and how many are beyond what chance allows.
-    fn tiles(&self) -> Result<(f64, usize), Error> {
-        let picture = self.rendered.pooled_noise(self.precise.picture.clone());
-        let tiles = compare(&picture, &self.rendered.estimate)?.tiles;
-        Ok((tiles.max_z(), tiles.failed().count()))
+            format!("{is_exact}{}", figure(expected.radiance())),
+            self.precise.off_by(expected),
+            self.precise.arithmetic.per_cent(),
+            format!("{:+.2}", self.precise.tiles.max_z()),
+            self.paper.off_by(expected),
+            self.paper.arithmetic.per_cent(),
+        ]
     }
 
     /// What `precise` should have kept to.
-    fn faults(&self, expected: &Expected) -> Result<Vec<String>, Error> {
-        let (off, arithmetic) = (self.off(&self.precise, expected)?, arithmetic(&self.precise)?);
-        let is_dark = expected.mean == [0.0; 3];
-        let bound = if expected.standard_error == 0.0 {
-            ENERGY
-        } else {
-            BIAS
-        };
-        let (z, failed) = self.tiles()?;
+    fn faults(&self, expected: &Expected) -> Vec<String> {
+        let Rendering {
+            arithmetic, tiles, ..
+        } = &self.precise;
         let mut faults = Vec::new();
-        if is_dark && off.value != 0.0 {
-            faults.push(format!("it is not dark, but {} bright", off.value));
-        }
-        if !is_dark && off.value.abs() > bound + SURE * off.error {
-            faults.push(format!(
-                "off by {} ± {} of what is expected",
-                off.value, off.error
-            ));
+        match self.precise.off(expected) {
+            None if self.precise.radiance != 0.0 => {
+                faults.push(format!("it is not dark: radiance {}", self.precise.radiance));
+            }
+            Some(off) if off.value.abs() > expected.bound() + SURE * off.error => {
+                faults.push(format!("off by {} of what is expected", off.per_cent()));
+            }
+            _ => {}
         }
         if arithmetic.value.abs() > BIAS + SURE * arithmetic.error {
-            faults.push(format!("a bias of {} ± {}", arithmetic.value, arithmetic.error));
+            faults.push(format!("a bias of {}", arithmetic.per_cent()));
         }
+        let failed = tiles.failed().count();
         if failed > 0 {
-            faults.push(format!("{failed} tiles are off, z {z}"));
+            faults.push(format!("{failed} tile tests fail, z {}", tiles.max_z()));
         }
         if self.saturated > 0 {
             faults.push(format!("{} sums do not fit a packet", self.saturated));
         }
-        Ok(faults)
+        faults
     }
 }
 
-/// The bias from double precision.
-fn arithmetic(paired: &Paired) -> Result<Share, Error> {
-    let (picture, double) = paired.difference();
-    let found = compare(&picture, &double)?;
-    Ok(Share {
-        value: found.bias.unwrap_or_default(),
-        error: found.bias_standard_error.unwrap_or_default(),
-    })
+impl Rendering {
+    fn of(paired: &Paired, rendered: &Rendered) -> Result<Self, Error> {
+        let found = compare(&rendered.pooled_noise(paired.picture.clone()), &rendered.estimate)?;
+        let (picture, double) = paired.difference();
+        let arithmetic = compare(&picture, &double)?;
+        Ok(Self {
+            picture: picture.picture,
+            radiance: found.mean.iter().sum::<f64>() / 3.0,
+            noise: found.standard_error.unwrap_or_default(),
+            arithmetic: Share {
+                value: arithmetic.bias.unwrap_or_default(),
+                error: arithmetic.bias_standard_error.unwrap_or_default(),
+            },
+            tiles: found.tiles,
+        })
+    }
+
+    /// How far it is from what is expected; none where that is dark.
+    fn off(&self, expected: &Expected) -> Option<Share> {
+        let level = expected.radiance();
+        (level > 0.0).then(|| Share {
+            value: self.radiance / level - 1.0,
+            error: self.noise.hypot(expected.standard_error),
+        })
+    }
+
+    /// The same to read; the radiance itself where it should be dark.
+    fn off_by(&self, expected: &Expected) -> String {
+        self.off(expected).map_or_else(
+            || format!("radiance {}", figure(self.radiance)),
+            |off| off.per_cent(),
+        )
+    }
+}
+
+impl Share {
+    fn per_cent(&self) -> String {
+        format!("{} ± {}", figure(100.0 * self.value), figure(100.0 * self.error))
+    }
+}
+
+impl Expected {
+    /// Mean of the channels.
+    fn radiance(&self) -> f64 {
+        self.mean.iter().sum::<f64>() / 3.0
+    }
+
+    /// What a picture may be off by: closed forms are of furnaces.
+    fn bound(&self) -> f64 {
+        if self.standard_error == 0.0 { ENERGY } else { BIAS }
+    }
 }
 
 #[cfg(test)]
@@ -265,7 +262,7 @@ mod tests {
                 mean: [mean; 3],
                 standard_error: 0.0,
             };
-            found.faults(&expected).unwrap().join("; ")
+            found.faults(&expected).join("; ")
         };
         assert_eq!(faults(1.0), "");
         assert!(faults(1.005).contains("of what is expected"));

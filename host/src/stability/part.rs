@@ -1,15 +1,21 @@
 //! What a part is given, and what it gives.
 
+use std::sync::atomic::{AtomicU64, Ordering};
+
 use indicatif::ProgressBar;
 
 use tracer::unit::{Plan, Termination};
 
 use super::{Plot, Sheet, Table};
 use crate::firmware::arithmetic::Arithmetic;
-use crate::scene::CompiledScene;
+use crate::oracle::reference::{self, Rendered};
+use crate::scene::{CompiledScene, Scene};
 
 /// Why a part could not be measured.
 pub type Error = Box<dyn std::error::Error + Send + Sync>;
+
+/// Standard errors by which a bound must be passed to be taken for broken: by chance, once in 30,000 times.
+pub(super) const SURE: f64 = 4.0;
 
 /// Something to measure.
 pub struct Part {
@@ -87,4 +93,20 @@ pub(super) fn plan(
         termination: Termination::Roulette,
         epsilon: arithmetic.epsilon(compiled.scale.magnification),
     }
+}
+
+/// The reference of a picture of `width` by `height` with `spp` samples a pixel; the effort hears of them.
+pub(super) fn reference(effort: &Effort, scene: &Scene, [width, height]: [u16; 2], spp: u32) -> Rendered {
+    let job = reference::Job {
+        width,
+        height,
+        spp,
+        termination: reference::Termination::Roulette,
+        seed: 1,
+    };
+    let done = AtomicU64::new(0);
+    reference::render(scene, &job, |samples| {
+        let before = done.fetch_max(samples, Ordering::Relaxed);
+        effort.done(samples.saturating_sub(before));
+    })
 }

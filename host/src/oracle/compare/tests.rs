@@ -343,3 +343,13 @@ fn noise_is_told_apart_by_side() {
     let found = compare(&picture, &exact).unwrap();
     assert_eq!((found.reference_standard_error, found.noise_share), (None, None));
 }
+
+/// A sky without noise: off by what its light is rounded by, and by a little more.
+#[test]
+fn the_rounding_of_light_is_no_error() {
+    let sky = |radiance: f64| exact(move |_| [radiance; 3]);
+    let failed = |picture: &Estimate| compare(picture, &sky(0.7)).unwrap().tiles.failed().count();
+    assert_eq!(failed(&sky(0.7 * (1.0 + 1.0 / 17_000.0))), 0);
+    assert!(failed(&sky(0.7 * (1.0 + 1.0 / 16_000.0))) > 0);
+    assert!(failed(&sky(0.7 * (1.0 - 1.0 / 16_000.0))) > 0);
+}
