@@ -175,6 +175,11 @@ impl<F: Float> SphereNumbers for Floating<F> {
     }
 
     #[inline]
+    fn on_unit(projection: F, d: [F; 3], _radius: I16F16) -> F {
+        projection / dot(d, d).root()
+    }
+
+    #[inline]
     fn length_of(projection: F) -> F {
         projection
     }
@@ -185,9 +190,10 @@ impl<F: Float> SphereNumbers for Floating<F> {
     }
 
     #[inline]
-    fn normal(p: [F; 3], radius: I16F16, _reciprocal: Reciprocal) -> [F; 3] {
-        let reciprocal = F::ONE / Self::length(radius);
-        p.map(|component| component * reciprocal)
+    fn normal(p: [F; 3], _radius: I16F16, _reciprocal: Reciprocal) -> [F; 3] {
+        // Not p / r: a normal that is too long makes a diffuse ray too long, which is off a room's surface by more at the chord's other
+        // end. That doubled with each bounce, and from the last place of `f64` led out of the room after some fifty.
+        Self::normalised(p, p)
     }
 }
 

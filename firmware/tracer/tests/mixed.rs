@@ -53,14 +53,44 @@ fn projections_are_exact_and_their_squares_within_two_ulp() {
         let exact = projection as i128 * projection as i128;
         // 36:92 against 32:32.
         let found = i128::from(Mixed::squared(exactly).to_bits()) << 60;
-        // Dropping 14 bits of the projection b costs up to 2 b 2^-32, rounding down one ulp more.
-        let bound = ((projection.unsigned_abs() as i128) << 15) + (2 << 60);
+        // Rounded down, and without the square of what is less than an ulp.
+        let bound = 2 << 60;
         assert!(
             (0..=bound).contains(&(exact - found)),
             "{projection}: {}",
             exact - found
         );
     }
+}
+
+/// Within 2^-43 of a unit: a 500th of an ulp of the distance's square, at the greatest distance and for the smallest ball.
+#[test]
+fn projections_on_a_unit_vector_forget_how_long_the_direction_is() {
+    let mut draw = Draw::new(6);
+    let mut moved = 0;
+    for _ in 0..500_000 {
+        let limit = if draw.fraction() < 0.5 { 100.0 } else { 12_000.0 };
+        let v = [draw.length(limit), draw.length(limit), draw.length(limit)];
+        let d = draw.direction();
+        let projection = Mixed::project(v, d);
+        let radius = I16F16::from_num(1.0 / 256.0 + draw.fraction());
+        let found = Mixed::on_unit(projection, d, radius);
+        let distance = projection.to_num::<f64>().abs();
+        // The square is one to the last place of what it is less than 1 by.
+        let excess: i64 = d.iter().map(|c| i64::from(c.to_bits()).pow(2)).sum::<i64>() - (1 << 60);
+        let shorter = distance * 0.5 * excess as f64 / (1u64 << 60) as f64;
+        let by = (projection - found).to_num::<f64>() * projection.to_num::<f64>().signum();
+        if distance < 64.0 * radius.to_num::<f64>().sqrt() - 1.0 {
+            assert_eq!(by, 0.0, "{v:?} {d:?} {radius}");
+        } else if distance > 64.0 * radius.to_num::<f64>().sqrt() + 1.0 {
+            assert!(
+                (by - shorter).abs() < 2f64.powi(-43),
+                "{v:?} {d:?}: {by}, {shorter}"
+            );
+            moved += u32::from(by != 0.0);
+        }
+    }
+    assert!(moved > 200_000, "{moved}");
 }
 
 #[test]

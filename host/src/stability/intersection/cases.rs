@@ -42,7 +42,7 @@ pub(super) struct Class {
 }
 
 /// The smallest radius that is looked at, in units.
-const SMALL: f64 = 0.01;
+const SMALL: f64 = 1.0 / 256.0;
 /// Radii and distances stay below what the format holds by this factor, so that a corner of the box around does, too.
 const MARGIN: f64 = 0.99;
 /// The largest radius of walls and glass, in units.

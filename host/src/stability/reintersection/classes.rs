@@ -93,14 +93,13 @@ pub(super) const CLASSES: &[Class] = &[
 ];
 
 /// The smallest radius, in units.
-pub(super) const SMALL: f64 = 0.01;
+pub(super) const SMALL: f64 = 1.0 / 256.0;
 /// The largest one of a sphere that is not vast, in units.
 pub(super) const LARGE: f64 = 1e4;
 /// The smallest vast radius, in units, and the largest.
 pub(super) const VAST: [f64; 2] = [2.0 * REACH, 1e5];
-/// From so many roots of its radius, in units, a ball is not small and far away: there the length of a direction, which is within
-/// 2^-29 of 1, moves its silhouette by less than half an ulp.
-const FAR: f64 = 64.0;
+/// How far from the centre of a ball a ray may start, in units: what the format has room for, less a hundredth.
+const FAR: f64 = 2.0 * REACH * 0.99;
 /// How far from a scene's middle its surfaces are, where they are vast, in units.
 const ROOM: f64 = 300.0;
 /// An ulp, in units.
@@ -174,7 +173,7 @@ fn round(
         let side = if within { -1.0 } else { 1.0 };
         let direction = towards(draw, outward.map(|c| side * c));
         // From within a ray may start at the far side.
-        let farthest = if within { 2.0 * radius } else { FAR * radius.sqrt() };
+        let farthest = if within { 2.0 * radius } else { FAR - radius };
         let back = draw.magnitude(4.0 * ULP, farthest);
         let start = [0, 1, 2].map(|i| centre[i] + radius * outward[i] - back * direction[i]);
         let body = Body::usual(&sphere(centre, radius, hollow, *material), two_sided);

@@ -40,6 +40,9 @@ pub trait SphereNumbers: Directions {
     }
     /// `v . d`.
     fn project(v: [Self::Length; 3], d: [Self::Unit; 3]) -> Self::Projection;
+    /// `v . d / |d|`, of the projection `v . d` on the way to a sphere of this radius. Directions are of unit length to 2^-29 only; what
+    /// that makes of the projection's square is seen where a ball is small beside its distance, and is left elsewhere.
+    fn on_unit(projection: Self::Projection, d: [Self::Unit; 3], radius: I16F16) -> Self::Projection;
     /// A projection as a length, cut to its format.
     fn length_of(projection: Self::Projection) -> Self::Length;
     /// A projection's square.
@@ -100,19 +103,31 @@ impl SphereNumbers for Mixed {
     }
 
     #[inline]
+    fn on_unit(projection: I18F46, d: [I2F30; 3], radius: I16F16) -> I18F46 {
+        // Up to 64 roots of the radius away, how far a ray passes the centre is known within half an ulp without.
+        let distance = (projection.to_bits() >> 46) as i32;
+        if distance * distance <= radius.to_bits() >> 4 {
+            return projection;
+        }
+        // 1 / |d| is 1 - (|d|^2 - 1) / 2 to 2^-56.
+        let [x, y, z] = bits(d);
+        let excess = ((x * x + y * y + z * z - (1 << 60)) >> 2) as i32;
+        let part = (projection.to_bits() >> 32) as i32;
+        I18F46::from_bits(projection.to_bits() - ((i64::from(part) * i64::from(excess)) >> 27))
+    }
+
+    #[inline]
     fn length_of(projection: I18F46) -> I16F16 {
         I16F16::from_bits((projection.to_bits() >> 30) as i32)
     }
 
     #[inline]
     fn squared(projection: I18F46) -> I32F32 {
-        // The square of 32:32 a half at a time: a projection is a length, so its whole part has 15 bits.
-        let fine = projection.to_bits().unsigned_abs() >> 14;
-        let (whole, part) = ((fine >> 32) as u32, fine as u32);
-        let cross = 2 * u64::from(whole) * u64::from(part);
-        let last = (u64::from(part) * u64::from(part)) >> 32;
-        let square = (u64::from(whole * whole) << 32) + cross + last;
-        I32F32::from_bits(square as i64)
+        // Of a length and what is less than an ulp of it; the last one's square is less than 2^-32.
+        let length = Self::length_of(projection);
+        let rest = projection.to_bits() as i32 & ((1 << 30) - 1);
+        let twice = (i64::from(length.to_bits()) * i64::from(rest)) >> 29;
+        Self::product(length, length) + I32F32::from_bits(twice)
     }
 
     #[inline]
@@ -162,6 +177,11 @@ impl SphereNumbers for Published {
 
     fn project(v: [I16F16; 3], d: [I16F16; 3]) -> I16F16 {
         I16F16::from_bits(Self::sum_of_products(v, d).to_bits() as i32)
+    }
+
+    /// Its directions are as published.
+    fn on_unit(projection: I16F16, _d: [I16F16; 3], _radius: I16F16) -> I16F16 {
+        projection
     }
 
     fn length_of(projection: I16F16) -> I16F16 {
