@@ -174,9 +174,10 @@ impl<F: Float> SphereNumbers for Floating<F> {
         dot(v, d)
     }
 
+    /// Directions are of unit length to the last place of the squares, too.
     #[inline]
-    fn on_unit(projection: F, d: [F; 3], _radius: I16F16) -> F {
-        projection / dot(d, d).root()
+    fn on_unit(projection: F, _d: [F; 3], _radius: I16F16) -> F {
+        projection
     }
 
     #[inline]

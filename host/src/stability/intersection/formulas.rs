@@ -2,7 +2,7 @@
 
 use fixedmath::{I2F30, I16F16};
 use operations::intersection::{Textbook, haines};
-use tracer::arithmetic::{Formats, Mixed};
+use tracer::arithmetic::{Directions, Formats, Mixed};
 use tracer::geometry::sphere::{CoarseSphere, HollowSphere, Reciprocal, SolidSphere, SphereNumbers};
 use tracer::geometry::{Grid, Hit, PrimitiveId, Ray, Shape, Standing};
 use tracer::profile::{Paper, Precise, Profile};
@@ -70,7 +70,7 @@ pub(super) const FORMULAS: &[Formula] = &[
     },
     Formula {
         name: "`precise` in double precision",
-        meet: tracers::<Lockstep<Precise>, Close>,
+        meet: double,
         line: Case::line,
         answers: |_| true,
     },
@@ -106,12 +106,26 @@ fn tracers<P, F: Needs>(case: &Case) -> Option<Answer>
 where
     P: Profile<Numbers: Formats<Length: Into<f64>, Unit: Into<f64>>>,
 {
+    meeting::<P, F>(case, &ray_of::<P>(&case.ray))
+}
+
+/// The same in double precision, whose directions are of unit length to the last place of its own.
+fn double(case: &Case) -> Option<Answer> {
+    let mut ray = ray_of::<Lockstep<Precise>>(&case.ray);
+    ray.direction = <Lockstep<Precise> as Profile>::Numbers::renormalised(ray.direction);
+    meeting::<Lockstep<Precise>, Close>(case, &ray)
+}
+
+fn meeting<P, F: Needs>(case: &Case, ray: &Ray<P::Numbers>) -> Option<Answer>
+where
+    P: Profile<Numbers: Formats<Length: Into<f64>, Unit: Into<f64>>>,
+{
     match case.surface {
-        Surface::Wall => shapes::<P, F, _>(&HollowSphere(case.record), case, Grid::new(0)),
+        Surface::Wall => shapes::<P, F, _>(&HollowSphere(case.record), case, ray, Grid::new(0)),
         Surface::Solid | Surface::Glass => {
             let (grid, coarse) = rough_look(case);
             let sphere = case.record;
-            shapes::<P, F, _>(&SolidSphere { coarse, sphere }, case, grid)
+            shapes::<P, F, _>(&SolidSphere { coarse, sphere }, case, ray, grid)
         }
     }
 }
@@ -130,24 +144,23 @@ fn rough_look(case: &Case) -> (Grid, CoarseSphere) {
     )
 }
 
-fn shapes<P, F: Needs, S: Shape>(shape: &S, case: &Case, grid: Grid) -> Option<Answer>
+fn shapes<P, F: Needs, S: Shape>(shape: &S, case: &Case, ray: &Ray<P::Numbers>, grid: Grid) -> Option<Answer>
 where
     P: Profile<Numbers: Formats<Length: Into<f64>, Unit: Into<f64>>>,
 {
-    let ray = ray_of::<P>(&case.ray);
     let standing = Standing {
         departs: case.departs,
         two_sided: false,
     };
     let epsilon = if case.departs { P::EPSILON } else { I16F16::ZERO };
-    let prepared = S::prepare::<P, F>(&ray, grid);
+    let prepared = S::prepare::<P, F>(ray, grid);
     let epsilon = P::Numbers::length(epsilon);
-    let t = shape.closest::<P, F>(&ray, &prepared, standing, epsilon, P::Numbers::FAR)?;
+    let t = shape.closest::<P, F>(ray, &prepared, standing, epsilon, P::Numbers::FAR)?;
     let hit = Hit {
         t,
         primitive: PrimitiveId::new(0),
     };
-    let surface = shape.interaction::<P, F>(&ray, standing, hit);
+    let surface = shape.interaction::<P, F>(ray, standing, hit);
     Some(Answer {
         distance: t.into() * 65_536.0,
         point: surface.point.map(|c| c.into() * 65_536.0),

@@ -109,9 +109,9 @@ impl SolidSphere {
                 None
             };
         }
-        let power = P::Numbers::square(self.sphere.square) - P::Numbers::dot(to_centre, to_centre);
         let projection = P::Numbers::on_unit(projection, ray.direction, self.sphere.radius);
         let b = P::Numbers::length_of(projection);
+        let power = P::Numbers::square(self.sphere.square) - P::Numbers::dot(to_centre, to_centre);
         let discriminant = P::Numbers::squared(projection) + power;
         if discriminant < P::Numbers::NO_SQUARE {
             return None;
