@@ -23,6 +23,7 @@ use crate::image::picture::{Estimate, displayed};
 pub use noise_share::NoiseShare;
 use noise_share::error_of_sum;
 pub use pixels::{PixelTest, Pixels};
+pub(crate) use tiles::sidak_threshold;
 pub use tiles::{FALSE_ALARM, SIDE, Tile, Tiles};
 
 /// The verdict on a picture.

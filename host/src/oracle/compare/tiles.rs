@@ -167,7 +167,7 @@ fn bias(sums: &Sums, level: f64) -> (f64, f64) {
 }
 
 /// The z-score within which all of `tests` independent tests stay with probability 1 - [`FALSE_ALARM`].
-pub(super) fn sidak_threshold(tests: usize) -> f64 {
+pub(crate) fn sidak_threshold(tests: usize) -> f64 {
     let one = 1.0 - (1.0 - FALSE_ALARM).powf(1.0 / tests.max(1) as f64);
     Normal::standard().inverse_cdf(1.0 - one / 2.0)
 }
