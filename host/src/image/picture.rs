@@ -68,6 +68,15 @@ impl Picture {
         (count > 0).then(|| sum.map(|component| component / count as f64))
     }
 
+    /// The same by an exposure that is so many stops longer, each of which is twice the radiance.
+    #[must_use]
+    pub fn exposed(&self, stops: i32) -> Self {
+        let factor = 2f64.powi(stops);
+        let pixels = self.pixels.iter();
+        let pixels = pixels.map(|pixel| pixel.map(|radiance| radiance.map(|c| c * factor)));
+        Self::new(self.width, self.height, pixels.collect())
+    }
+
     /// How the picture looks on a display: 8 bits a channel in sRGB, clamped; a missing pixel is magenta.
     pub fn display(&self) -> Vec<u8> {
         self.pixels

@@ -34,6 +34,8 @@ const SPP: u64 = 4096;
 /// What `precise` must keep to, as a share of a picture's mean: its bias from double precision, and what a furnace may lose or gain.
 const BIAS: f64 = 1e-4;
 const ENERGY: f64 = 2e-4;
+/// The radiance that pictures of the sheet are exposed for: its square root is a display's middle.
+const GREY: f64 = 0.25;
 /// Pictures in a row of the sheet.
 const ROW: usize = 5;
 
@@ -90,13 +92,15 @@ fn measure(effort: &Effort) -> Result<Findings, Error> {
         table.push(found.row(&scene.name, expected));
         let faults_of_it = found.faults(expected, scenes).into_iter();
         faults.extend(faults_of_it.map(|fault| format!("{}: {fault}", scene.name)));
-        panels.push(Panel::picture(scene.name, &found.precise.picture));
+        panels.push(found.precise.panel(&scene.name));
     }
     Ok(Findings {
         tables: vec![table],
         sheets: vec![Sheet {
             name: "hard-scenes",
-            title: format!("Hard scenes, {spp} samples a pixel, precise"),
+            title: format!(
+                "Hard scenes, {spp} samples a pixel, precise, by exposures that make most of them grey"
+            ),
             rows: panels.chunks(ROW).map(<[Panel]>::to_vec).collect(),
         }],
         faults,
@@ -211,6 +215,21 @@ impl Rendering {
             },
             tiles: found.tiles,
         })
+    }
+
+    /// The picture by the exposure, in whole stops, that brings its mean next to a middle grey.
+    fn panel(&self, name: &str) -> Panel {
+        let stops = if self.radiance > 0.0 {
+            (GREY / self.radiance).log2().round() as i32
+        } else {
+            0
+        };
+        let exposure = if stops == 0 {
+            String::new()
+        } else {
+            format!(", {stops:+} stops")
+        };
+        Panel::picture(format!("{name}{exposure}"), &self.picture.exposed(stops))
     }
 
     /// How far it is from what is expected; none where that is dark.
