@@ -63,7 +63,7 @@ fn projections_are_exact_and_their_squares_within_two_ulp() {
     }
 }
 
-/// Within 2^-43 of a unit: a 500th of an ulp of the distance's square, at the greatest distance and for the smallest ball.
+/// Within 2^-43 of a unit of `v . d / |d|`, and left as it is up to 64 roots of the radius.
 #[test]
 fn projections_on_a_unit_vector_forget_how_long_the_direction_is() {
     let mut draw = Draw::new(6);
@@ -76,7 +76,7 @@ fn projections_on_a_unit_vector_forget_how_long_the_direction_is() {
         let radius = I16F16::from_num(1.0 / 256.0 + draw.fraction());
         let found = Mixed::on_unit(projection, d, radius);
         let distance = projection.to_num::<f64>().abs();
-        // The square is one to the last place of what it is less than 1 by.
+        // By how much the direction's square is more than 1, exactly.
         let excess: i64 = d.iter().map(|c| i64::from(c.to_bits()).pow(2)).sum::<i64>() - (1 << 60);
         let shorter = distance * 0.5 * excess as f64 / (1u64 << 60) as f64;
         let by = (projection - found).to_num::<f64>() * projection.to_num::<f64>().signum();
