@@ -274,22 +274,28 @@ mod tests {
 
     use super::*;
 
-    /// Proof that this part can fail: figures that are not the scene's, and a bright picture of a dark scene.
+    /// Proof that this part can fail: figures that are not the scene's, a bright picture of a dark scene, and a tile beyond what chance allows.
     #[test]
     fn planted_faults_are_found() {
         let effort = Effort::new(100, ProgressBar::hidden());
         let file = workspace::file(FOLDER).unwrap().join("furnace-diffuse.toml");
-        let found = Found::of(&effort, &Scene::load(&file).unwrap(), 16).unwrap();
-        let faults = |mean: f64| {
+        let mut found = Found::of(&effort, &Scene::load(&file).unwrap(), 16).unwrap();
+        let faults = |found: &Found, mean: f64, scenes| {
             let expected = Expected {
                 mean: [mean; 3],
                 standard_error: 0.0,
             };
-            found.faults(&expected, 1).join("; ")
+            found.faults(&expected, scenes).join("; ")
         };
-        assert_eq!(faults(1.0), "");
-        assert!(faults(1.005).contains("of what is expected"));
-        assert!(faults(0.0).contains("not dark"));
+        assert_eq!(faults(&found, 1.0, 1), "");
+        assert!(faults(&found, 1.005, 1).contains("of what is expected"));
+        assert!(faults(&found, 0.0, 1).contains("not dark"));
+        // Of a tile and channel in one picture chance allows 3.81, in 22 of them 4.51.
+        found.precise.tiles.tiles[7].z[1] = -4.2;
+        assert!(faults(&found, 1.0, 1).contains("a tile is off by a z of -4.2"));
+        assert_eq!(faults(&found, 1.0, 22), "");
+        found.precise.tiles.tiles[7].z[1] = 4.6;
+        assert!(faults(&found, 1.0, 22).contains("a tile is off by a z of 4.6"));
     }
 
     #[test]
