@@ -12,7 +12,7 @@ use host::fleet::session::boot_block_len;
 use host::platform::console::say;
 use host::platform::setup::{self, Toolchain, Wanted};
 use host::platform::workspace;
-use host::scene::{Scene, compile};
+use host::scene::{Integrator, Scene, compile};
 
 use crate::SetUp;
 
@@ -56,7 +56,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
 /// Builds and measures the images for a scene; fails where one is over the budget.
 pub(crate) fn measure(toolchain: &Toolchain, scene: &Scene) -> anyhow::Result<Vec<Footprint>> {
     // The image does not depend on the size of the picture, nor does the boot block's length.
-    let compiled = compile(scene, 4, 3);
+    let compiled = compile(scene, 4, 3, Integrator::Path);
     let boot_block = boot_block_len(&compiled);
     let footprint = |(board, profile): (Board, Arithmetic)| {
         let recipe = Recipe {

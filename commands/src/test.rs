@@ -14,7 +14,7 @@ use host::firmware::{self, Capability, Recipe};
 use host::platform::console::say;
 use host::platform::setup::{self, Toolchain, Wanted};
 use host::platform::workspace;
-use host::scene::{Scene, compile};
+use host::scene::{Integrator, Scene, compile};
 
 use crate::step::{cargo, seconds, shown, step, succeed};
 use crate::{SetUp, check, fuzz, size, verify};
@@ -123,7 +123,9 @@ fn firmware_steps(toolchain: &Toolchain, scene: &Scene) -> anyhow::Result<Vec<Fo
 
 /// Lints the boards' crates with the compiler that builds them, without a log and with all of it.
 fn lint_firmware(toolchain: &Toolchain, scene: &Scene) -> anyhow::Result<()> {
-    let needs = compile(scene, 4, 3).needs.with(Capability::Roulette);
+    let needs = compile(scene, 4, 3, Integrator::Path)
+        .needs
+        .with(Capability::Roulette);
     let both = |board| [(board, None), (board, Some(Level::Trace))];
     for (board, log) in Board::ALL.into_iter().flat_map(both) {
         let recipe = Recipe {

@@ -1,7 +1,7 @@
 //! Scene texts, mutated: none makes the reader or the compiler panic, and what is accepted compiles to what a core can use.
 #![no_main]
 
-use host::scene::{Scene, compile};
+use host::scene::{Integrator, Scene, compile};
 use libfuzzer_sys::fuzz_target;
 use tracer::geometry::sphere::SphereRecord;
 
@@ -20,7 +20,7 @@ fuzz_target!(|text: &str| {
         if scene.check_frame(width, height).is_err() {
             continue;
         }
-        let compiled = compile(&scene, width, height);
+        let compiled = compile(&scene, width, height, Integrator::Path);
         let primitives = compiled.view().aggregate.primitives;
         primitives
             .hollow_spheres

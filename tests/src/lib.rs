@@ -18,7 +18,7 @@ use host::oracle::lockstep::{self, Paired};
 use host::oracle::reference::{self, Job, Rendered};
 use host::platform::setup::{self, Install, Toolchain, Wanted};
 use host::platform::workspace;
-use host::scene::{Scene, compile};
+use host::scene::{Integrator, Scene, compile};
 use tempfile::TempDir;
 use tracer::profile::Profile;
 use tracer::unit::{Plan, Termination};
@@ -72,20 +72,34 @@ pub fn plan<P: Profile>(width: u16, height: u16, spp: u32) -> Plan {
 
 /// The film that any fleet must end with, rendered unit by unit in this process.
 pub fn film<P: Profile>(scene: &Scene, plan: &Plan) -> Film {
-    let compiled = compile(scene, plan.width, plan.height);
+    let compiled = compile(scene, plan.width, plan.height, Integrator::Path);
     direct::film::<P>(&compiled, plan)
 }
 
 /// `P`'s picture and its double's, sample by sample, with their noise.
 pub fn pair<P: Profile<Random: Clone>>(scene: &Scene, plan: &Plan) -> Paired {
-    lockstep::render::<P>(&compile(scene, plan.width, plan.height), plan, |_| ())
+    lockstep::render::<P>(
+        &compile(scene, plan.width, plan.height, Integrator::Path),
+        plan,
+        |_| (),
+    )
 }
 
-/// `P`'s picture as the film has it, with the noise of its samples.
+/// `P`'s picture by paths as the film has it, with the noise of its samples.
 pub fn estimate<P: Profile<Random: Clone>>(scene: &Scene, plan: &Plan) -> Estimate {
+    estimate_by::<P>(scene, plan, Integrator::Path)
+}
+
+/// `P`'s picture by this integrator as the film has it, with the noise of its samples.
+pub fn estimate_by<P: Profile<Random: Clone>>(
+    scene: &Scene,
+    plan: &Plan,
+    integrator: Integrator,
+) -> Estimate {
+    let compiled = compile(scene, plan.width, plan.height, integrator);
     Estimate {
-        picture: film::<P>(scene, plan).picture(),
-        ..pair::<P>(scene, plan).picture
+        picture: direct::film::<P>(&compiled, plan).picture(),
+        ..lockstep::render::<P>(&compiled, plan, |_| ()).picture
     }
 }
 

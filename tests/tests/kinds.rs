@@ -8,9 +8,9 @@ use fixedmath::U48F16;
 use host::oracle::compare::{Comparison, compare};
 use host::oracle::direct;
 use host::oracle::lockstep::Paired;
-use host::scene::{Scene, compile};
+use host::scene::{Integrator, Scene, compile};
 use tracer::camera::Camera;
-use tracer::integrator::{Integrator, Path};
+use tracer::integrator::{Integrator as _, Path};
 use tracer::profile::Precise;
 use tracer::scene::{All, Capability};
 use tracer::unit::{Plan, SPAN, render};
@@ -20,7 +20,11 @@ use wire::SUM_MAX;
 fn compared(scene: &Scene, width: u16, height: u16, spp: u32) -> Comparison {
     let reference = reference(scene, width, height, spp);
     let precise = estimate::<Precise>(scene, &plan::<Precise>(width, height, spp));
-    compare(&reference.pooled_noise(precise), &reference.estimate).unwrap()
+    compare(
+        &reference.pooled_noise(precise, Integrator::Path),
+        &reference.estimate,
+    )
+    .unwrap()
 }
 
 fn no_tile_is_off(name: &str, found: &Comparison) {
@@ -43,7 +47,7 @@ fn room(emission: f64, material: &str, reflectance: f64) -> Scene {
 #[test]
 fn balls_that_rays_start_in() {
     let scene = Scene::load(&repository("tests/scenes/cut-open.toml")).unwrap();
-    let compiled = compile(&scene, 64, 48);
+    let compiled = compile(&scene, 64, 48, Integrator::Path);
     assert!(compiled.needs.has(Capability::TwoSided));
     no_tile_is_off("cut open", &compared(&scene, 64, 48, 256));
     // One-sided, the balls that are cut are not seen: the test can fail.
@@ -91,7 +95,7 @@ fn rooms_lose_no_light() {
 fn sums_of_bright_mirrors_fit() {
     for emission in [200.0, 4095.0] {
         let scene = room(emission, "mirror", 0.999);
-        let compiled = compile(&scene, 8, 8);
+        let compiled = compile(&scene, 8, 8, Integrator::Path);
         let plan = plan::<Precise>(8, 8, 64);
         let (path, camera) = (Path::<Precise, All>::new(&plan), Camera::new(&compiled.camera));
         for id in 0..plan.units().unwrap() {

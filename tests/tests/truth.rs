@@ -11,7 +11,7 @@ use host::image::picture::{Estimate, Picture};
 use host::oracle::compare::{Comparison, SIDE, compare};
 use host::oracle::lockstep::Paired;
 use host::oracle::reference::Rendered;
-use host::scene::{Material, Scene};
+use host::scene::{Integrator, Material, Scene};
 use tracer::profile::{Paper, Precise, Profile};
 use tracer::unit::Plan;
 use whole_system::{
@@ -62,10 +62,13 @@ fn small_picture() -> &'static Picture {
 
 /// A picture that has the small picture's noise.
 fn with_noise(picture: Picture) -> Estimate {
-    small_reference().pooled_noise(Estimate {
-        picture,
-        ..small_pair().picture.clone()
-    })
+    small_reference().pooled_noise(
+        Estimate {
+            picture,
+            ..small_pair().picture.clone()
+        },
+        Integrator::Path,
+    )
 }
 
 /// What a wide picture shows, tracer and reference work out each for itself.
@@ -73,7 +76,11 @@ fn with_noise(picture: Picture) -> Estimate {
 fn a_wide_picture_is_the_reference_s() {
     let precise = estimate::<Precise>(&cornell(), &plan::<Precise>(64, 36, 256));
     let reference = reference(&cornell(), 64, 36, 256);
-    let found = compare(&reference.pooled_noise(precise), &reference.estimate).unwrap();
+    let found = compare(
+        &reference.pooled_noise(precise, Integrator::Path),
+        &reference.estimate,
+    )
+    .unwrap();
     show("precise, 16:9", &found);
     assert_eq!(found.tiles.failed().count(), 0);
 }
@@ -119,7 +126,11 @@ fn no_tile_is_off_in_scenes_of_other_kinds() {
         let scene = Scene::load(&repository(&format!("tests/scenes/{name}.toml"))).unwrap();
         let reference = reference(&scene, 64, 48, spp);
         let precise = estimate::<Precise>(&scene, &plan::<Precise>(64, 48, SPP));
-        let found = compare(&reference.pooled_noise(precise), &reference.estimate).unwrap();
+        let found = compare(
+            &reference.pooled_noise(precise, Integrator::Path),
+            &reference.estimate,
+        )
+        .unwrap();
         show(name, &found);
         assert_eq!(found.tiles.failed().count(), 0, "{name}");
     }
@@ -137,7 +148,11 @@ fn tiles_see_a_glass_ball_of_the_wrong_index() {
     }
     let wrong = estimate::<Precise>(&wrong, &plan::<Precise>(64, 48, 4096));
     let reference = small_reference();
-    let found = compare(&reference.pooled_noise(wrong), &reference.estimate).unwrap();
+    let found = compare(
+        &reference.pooled_noise(wrong, Integrator::Path),
+        &reference.estimate,
+    )
+    .unwrap();
     show("index 1.3", &found);
     assert!(found.bias.unwrap().abs() < 0.01, "the mean alone would not tell");
     assert!(found.tiles.failed().count() > 0);
@@ -168,7 +183,7 @@ fn precise_is_its_double_within_a_quarter_of_a_level() {
 #[test]
 fn the_double_is_the_reference_but_for_noise() {
     let reference = small_reference();
-    let double = reference.pooled_noise(small_pair().double.clone());
+    let double = reference.pooled_noise(small_pair().double.clone(), Integrator::Path);
     let found = explained_by_noise("double", &double, &reference.estimate);
     let found = found.unwrap_or_else(|error| panic!("{error}"));
     let (pixels, uniformity) = (found.pixels.expect("tested"), found.uniformity.expect("tested"));

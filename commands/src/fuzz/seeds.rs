@@ -6,7 +6,7 @@ use std::path::Path;
 use host::image::openexr;
 use host::image::picture::{Estimate, Picture};
 use host::platform::workspace;
-use host::scene::{Scene, compile};
+use host::scene::{Integrator, Scene, compile};
 use wire::boot::{PixelOrder, Termination};
 use wire::{
     Boot, Command, Farewell, FaultInfo, FromCore, Hello, MAX_PAYLOAD, Message, Name, PixelSums, Pixels,
@@ -65,7 +65,7 @@ fn seed(folder: &Path, target: &str, name: &str, bytes: &[u8]) -> anyhow::Result
 /// A scene as cores have it, alone and in its boot block.
 fn scene(folder: &Path, file: &Path) -> anyhow::Result<()> {
     let scene = Scene::load(file)?;
-    let compiled = compile(&scene, 64, 48);
+    let compiled = compile(&scene, 64, 48, Integrator::Path);
     let (camera, blob) = (bytemuck::bytes_of(&compiled.camera), compiled.blob.bytes());
     seed(folder, "scene-blob", &scene.name, &[camera, blob].concat())?;
     let block = Boot {

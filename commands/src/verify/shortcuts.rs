@@ -7,7 +7,7 @@ use anyhow::{Context, ensure};
 use host::oracle::shortcuts;
 use host::platform::console::{bar, say};
 use host::platform::workspace;
-use host::scene::{Scene, compile};
+use host::scene::{Integrator, Scene, compile};
 
 /// Arguments of `verify shortcuts`.
 #[derive(clap::Args)]
@@ -42,7 +42,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
     bar.set_length(scenes.len() as u64);
     let (mut rays, mut rooms, mut coarse) = (0, 0, 0);
     for (index, (name, scene)) in scenes.iter().enumerate() {
-        let compiled = compile(scene, 64, 48);
+        let compiled = compile(scene, 64, 48, Integrator::Path);
         let share = if index < named {
             half / named as u64
         } else {

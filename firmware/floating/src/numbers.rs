@@ -9,6 +9,7 @@ use tracer::arithmetic::{Directions, Formats, Sampling};
 use tracer::camera::FilmNumbers;
 use tracer::geometry::Grid;
 use tracer::geometry::sphere::{Bend, CoarseSphere, Reciprocal, SphereNumbers, VastNumbers};
+use tracer::light::{CapLight, LEAST_SHARE, LightNumbers, MOST_DOUBLINGS, Magnitude};
 use tracer::material::{DielectricNumbers, RadianceNumbers};
 
 use crate::Float;
@@ -83,6 +84,18 @@ impl<F: Float> Directions for Floating<F> {
     }
 }
 
+impl<F: Float> Floating<F> {
+    /// A point of the unit disc.
+    #[inline]
+    fn on_disc(value: U0F32) -> Option<[F; 2]> {
+        // As fixed point chooses, so that both draw alike.
+        warp::checked_hemisphere(value.to_bits())?;
+        let coordinate = |bits: u32| F::of_i32((bits as u16 as i16).into()) + F::of(0.5);
+        let bits = [value.to_bits() >> 16, value.to_bits()];
+        Some(bits.map(|bits| coordinate(bits) * F::of(1.0 / 32768.0)))
+    }
+}
+
 impl<F: Float> Sampling for Floating<F> {
     #[inline]
     fn cos_sin(turn: U0F32) -> (F, F) {
@@ -97,11 +110,7 @@ impl<F: Float> Sampling for Floating<F> {
 
     #[inline]
     fn on_hemisphere(value: U0F32) -> Option<[F; 3]> {
-        // As fixed point chooses, so that both draw alike.
-        warp::checked_hemisphere(value.to_bits())?;
-        let coordinate = |bits: u32| F::of_i32((bits as u16 as i16).into()) + F::of(0.5);
-        let [u, v] =
-            [value.to_bits() >> 16, value.to_bits()].map(|bits| coordinate(bits) * F::of(1.0 / 32768.0));
+        let [u, v] = Self::on_disc(value)?;
         Some([u, v, not_negative(F::ONE - u * u - v * v).root()])
     }
 
@@ -324,4 +333,68 @@ impl<F: Float> RadianceNumbers for Floating<F> {
     fn film_sum(sum: F) -> U32F32 {
         U32F32::from_bits((sum * F::of(TWO_TO_32)).to_u64())
     }
+}
+
+impl<F: Float> LightNumbers for Floating<F> {
+    /// One minus the cosine of its half angle.
+    type Cone = F;
+    type Balance = F;
+
+    fn direction(v: [F; 3]) -> Option<[F; 3]> {
+        (dot(v, v) > F::ZERO).then(|| Self::normalised(v, v))
+    }
+
+    fn on_cap(cap: &CapLight, value: U0F32) -> Option<[F; 3]> {
+        let [x, y] = Self::on_disc(value)?;
+        let square = x * x + y * y;
+        let flatness = (F::ONE - fraction::<F>(cap.height) * square * F::of(0.5)).root();
+        Some([0, 1, 2].map(|i| {
+            let [across, up] = cap.across.map(|vector| Self::length(vector[i]));
+            Self::length(cap.pole[i]) + flatness * (x * across + y * up) - square * Self::length(cap.down[i])
+        }))
+    }
+
+    fn cone(radius: F, square: F) -> Option<F> {
+        let sine_squared = radius * radius / square;
+        (sine_squared < F::ONE).then(|| sine_squared / (F::ONE + (F::ONE - sine_squared).root()))
+    }
+
+    fn in_cone(height: F, value: U0F32) -> Option<[F; 3]> {
+        let [x, y] = Self::on_disc(value)?;
+        let below = height * (x * x + y * y);
+        let spread = (height * (F::of(2.0) - below)).root();
+        Some([x * spread, y * spread, F::ONE - below])
+    }
+
+    fn balance_of_cap(cosine: F, turned: F, reach: Magnitude, square: F) -> F {
+        let own = cosine * turned * of_magnitude(reach);
+        own / (own + square)
+    }
+
+    fn balance_of_cone(cosine: F, height: F, reach: Magnitude) -> F {
+        let own = cosine * height * of_magnitude(reach);
+        own / (own + F::ONE)
+    }
+
+    fn share(balance: F) -> F {
+        balance
+    }
+
+    fn thinned(balance: F, fraction: impl FnOnce() -> U0F32) -> Option<F> {
+        let least = F::of(libm::ldexp(1.0, LEAST_SHARE));
+        if balance >= least {
+            return Some(balance);
+        }
+        let (mut share, mut doublings) = (balance, 0);
+        while share < least && doublings < MOST_DOUBLINGS {
+            (share, doublings) = (share + share, doublings + 1);
+        }
+        let chance = ((1u64 << (MOST_DOUBLINGS - doublings)) - 1) as u32;
+        (fraction().to_bits() <= chance).then_some(share)
+    }
+}
+
+fn of_magnitude<F: Float>(magnitude: Magnitude) -> F {
+    let (mantissa, exponent) = magnitude.parts();
+    F::of(libm::ldexp(mantissa.into(), exponent))
 }

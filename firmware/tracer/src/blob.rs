@@ -17,6 +17,8 @@ pub enum BlobError {
     BadShape,
     /// A material holds what none does.
     BadMaterial,
+    /// An emitter holds what none does.
+    BadLight,
     /// It needs something that this image was built without.
     NotInThisImage,
 }

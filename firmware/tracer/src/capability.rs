@@ -46,6 +46,10 @@ capabilities! {
     Glass = "glass",
     /// A sphere whose radius 16:16 has no room for.
     Vast = "vast",
+    /// Emitters that diffuse surfaces look for: see [`Lights`](crate::light::Lights).
+    Lights = "lights",
+    /// Such emitters that are balls: see [`BallLight`](crate::light::BallLight).
+    BallLights = "ball-lights",
     /// Russian roulette; otherwise paths end at a fixed depth.
     Roulette = "roulette",
 }

@@ -12,6 +12,7 @@
 //! | [`geometry`] | ray, hit, interaction; the shapes, each with its arithmetic and its record |
 //! | [`aggregate`] | finds the nearest of many primitives |
 //! | [`material`] | the table of materials; the BSDFs, each with its arithmetic and its parameters |
+//! | [`light`] | emitters, and where surfaces look for their light |
 //! | [`integrator`] | radiance along a camera ray |
 //! | [`camera`] | where that ray starts |
 //! | [`scene`] | a view of the bytes that the host's compiler writes, taken apart by [`blob`] |
@@ -31,6 +32,7 @@ pub mod camera;
 pub mod capability;
 pub mod geometry;
 pub mod integrator;
+pub mod light;
 pub mod material;
 pub mod plan;
 pub mod profile;

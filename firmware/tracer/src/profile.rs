@@ -6,17 +6,19 @@ use crate::aggregate::RoomNumbers;
 use crate::arithmetic::{Mixed, Published, Sampling};
 use crate::camera::FilmNumbers;
 use crate::geometry::ShapeNumbers;
+use crate::light::LightNumbers;
 use crate::material::{HemisphereSampling, MalleyDisc, MaterialNumbers, RadianceNumbers, RejectedDisc};
 use crate::random::{FullState, LowBits, Random};
 
 /// Everything a tracer computes with.
 pub trait Numbers:
-    Sampling + FilmNumbers + RadianceNumbers + ShapeNumbers + RoomNumbers + MaterialNumbers
+    Sampling + FilmNumbers + RadianceNumbers + ShapeNumbers + RoomNumbers + MaterialNumbers + LightNumbers
 {
 }
 
-impl<N: Sampling + FilmNumbers + RadianceNumbers + ShapeNumbers + RoomNumbers + MaterialNumbers> Numbers
-    for N
+impl<
+    N: Sampling + FilmNumbers + RadianceNumbers + ShapeNumbers + RoomNumbers + MaterialNumbers + LightNumbers,
+> Numbers for N
 {
 }
 

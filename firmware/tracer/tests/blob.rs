@@ -3,13 +3,14 @@
 mod support;
 
 use bytemuck::Zeroable;
-use fixedmath::{I2F30, U0F32};
+use fixedmath::{I2F30, I16F16, U0F32};
 use proptest::prelude::*;
 use support::{Blob, GRID, blob, blob_for, camera, sphere};
 use tracer::aggregate::Room;
 use tracer::camera::CameraRecord;
 use tracer::geometry::sphere::{SolidSphere, SphereRecord, VastSphere};
 use tracer::geometry::{Grid, PrimitiveId, PrimitiveSet};
+use tracer::light::{BallLight, CapLight, Magnitude};
 use tracer::material::{Kind, MaterialId, MaterialRecord};
 use tracer::scene::{BlobError, Capabilities, Capability, Header, MAX_BYTES, MAX_PRIMITIVES, Scene};
 
@@ -33,14 +34,13 @@ fn a_sphere_is_these_bytes() {
         &[sphere([1.0, -1.0, 0.5], 2.0, 0.5, Kind::Diffuse)],
     );
     let words: [u32; 32] = [
-        u32::from_le_bytes(*b"FXS4"),
+        u32::from_le_bytes(*b"FXS5"),
         // The third and the seventh capability.
         0b100_0100,
-        // One material, and the grid's shift; no hollow sphere, and one solid.
+        // One material, and the grid's shift; no emitter; no hollow sphere, and one solid; no vast one.
         1 | GRID << 16,
-        1 << 16,
-        // No vast one, and zero.
         0,
+        1 << 16,
         0,
         // A centre of (0, -1, 0) on the grid; a square of less than 2, 4.9 of the longest distance, and 7.
         0xffff_0000,
@@ -106,14 +106,24 @@ fn faulty_scenes_are_refused() {
         "nobody knows this need"
     );
     assert_eq!(
-        spoiled(12, 2),
+        spoiled(16, 2),
         Err(BlobError::Length),
         "more spheres than there are"
     );
     assert_eq!(
-        spoiled(13, 2),
+        spoiled(17, 2),
         Err(BlobError::BadHeader),
         "more than there can be"
+    );
+    assert_eq!(
+        spoiled(12, 2),
+        Err(BlobError::BadHeader),
+        "more emitters than spheres"
+    );
+    assert_eq!(
+        spoiled(14, 1),
+        Err(BlobError::Length),
+        "an emitter that is not there"
     );
     assert_eq!(spoiled(10, 32), Err(BlobError::BadHeader), "a grid without bits");
     assert_eq!(
@@ -161,6 +171,56 @@ fn a_room_has_walls_that_there_are() {
 }
 
 #[test]
+fn emitters_are_of_a_kind_and_a_material_that_there_is() {
+    let plain = blob(&[], &[sphere([0.0; 3], 1.0, 0.5, Kind::Diffuse)]);
+    let light = BallLight {
+        radius: I16F16::ONE,
+        reach: Magnitude::new(2, 0),
+        ..BallLight::zeroed()
+    };
+    let with = |light: BallLight, without: &[Capability]| {
+        let mut bytes = [plain.bytes(), bytemuck::bytes_of(&light)].concat();
+        bytes[14] = 1;
+        let mut blob = Blob(vec![0; bytes.len() / 8]);
+        let needs = without
+            .iter()
+            .fold(Capabilities::ALL, |needs, &capability| needs.without(capability));
+        let needs = needs.without(Capability::Room).without(Capability::Coarse);
+        bytes[4..8].copy_from_slice(bytemuck::bytes_of(&needs));
+        blob.bytes_mut().copy_from_slice(&bytes);
+        Scene::view(blob.bytes(), Capabilities::ALL).map(|scene| scene.lights.balls == [light])
+    };
+    assert_eq!(with(light, &[]), Ok(true));
+    for missing in [Capability::Lights, Capability::BallLights] {
+        assert_eq!(with(light, &[missing]), Err(BlobError::BadLight));
+    }
+    for bad in [
+        BallLight {
+            radius: I16F16::ZERO,
+            ..light
+        },
+        BallLight {
+            reach: Magnitude::zeroed(),
+            ..light
+        },
+        BallLight {
+            reach: Magnitude::new(1, 1 << 20),
+            ..light
+        },
+        BallLight {
+            material: MaterialId::new(1),
+            ..light
+        },
+        BallLight {
+            is_clipped: 2,
+            ..light
+        },
+    ] {
+        assert_eq!(with(bad, &[]), Err(BlobError::BadLight), "{bad:?}");
+    }
+}
+
+#[test]
 fn an_image_takes_no_more_than_it_can_do() {
     let mirror = blob_for(
         Capabilities::of(&[Capability::Solid, Capability::Mirror]),
@@ -199,7 +259,8 @@ fn a_black_wall_needs_no_diffuse_code() {
 fn as_many_spheres_as_there_may_be() {
     let ball = sphere([0.0; 3], 1.0, 0.5, Kind::Diffuse);
     let most = blob(&[], &vec![ball; MAX_PRIMITIVES]);
-    assert_eq!(most.bytes().len() + size_of::<Room>(), MAX_BYTES);
+    let lights = MAX_PRIMITIVES * size_of::<BallLight>();
+    assert_eq!(most.bytes().len() + size_of::<Room>() + lights, MAX_BYTES);
     assert_eq!(counts(&most, Capabilities::ALL), Ok((0, MAX_PRIMITIVES)));
     let more = blob(&[ball], &vec![ball; MAX_PRIMITIVES]);
     assert_eq!(counts(&more, Capabilities::ALL), Err(BlobError::BadHeader));
@@ -255,15 +316,19 @@ proptest! {
         hollow in 0u16..6,
         solid in 0u16..6,
         vast in 0u16..6,
+        caps in 0u16..6,
+        balls in 0u16..6,
     ) {
-        let header = Header::new(Capabilities::ALL, materials, Grid::new(GRID), [hollow, solid, vast]);
+        let header = Header::new(Capabilities::ALL, materials, Grid::new(GRID), [hollow, solid, vast], [caps, balls]);
         bytemuck::cast_slice_mut(&mut words)[..HEADER].copy_from_slice(bytemuck::bytes_of(&header));
         let whole = HEADER
             + size_of::<Room>()
             + usize::from(hollow) * size_of::<SphereRecord>()
             + usize::from(solid) * SPHERE
             + usize::from(vast) * size_of::<VastSphere>()
-            + usize::from(materials) * MATERIAL;
+            + usize::from(materials) * MATERIAL
+            + usize::from(caps) * size_of::<CapLight>()
+            + usize::from(balls) * size_of::<BallLight>();
         let _ = counts(&Blob(words.clone()), Capabilities::ALL);
         words.resize(whole / 8, 0x0001_0000_0000_0000);
         let _ = counts(&Blob(words), Capabilities::ALL);

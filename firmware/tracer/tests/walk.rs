@@ -4,7 +4,7 @@ mod support;
 
 use fixedmath::{I2F30, I16F16, U0F32, U16F16, U48F16};
 use support::{Blob, GLASS, Sphere, blob, camera, sphere};
-use tracer::aggregate::Aggregate;
+use tracer::aggregate::{Aggregate, Sight};
 use tracer::arithmetic::vector::reflected;
 use tracer::arithmetic::{Directions, Formats, Mixed, Published, Sampling};
 use tracer::camera::Camera;
@@ -98,8 +98,18 @@ fn records(scene: &Scene<'_>) -> Vec<SphereRecord> {
 fn nearest<P: Profile>(scene: &Scene<'_>, ray: &Ray<P::Numbers>) -> Option<Interaction<P::Numbers>> {
     let epsilon = P::Numbers::length(Precise::EPSILON);
     let surface = scene.aggregate.intersect::<P, All>(ray, epsilon)?;
-    assert!(scene.aggregate.any::<P, All>(ray, epsilon, P::Numbers::FAR));
-    assert!(!scene.aggregate.any::<P, All>(ray, epsilon, epsilon));
+    let sight = |t_max| Sight {
+        ray: *ray,
+        t_max,
+        target: PrimitiveId::NONE,
+        is_within: false,
+    };
+    assert!(
+        scene
+            .aggregate
+            .occludes::<P, All>(&sight(P::Numbers::FAR), epsilon)
+    );
+    assert!(!scene.aggregate.occludes::<P, All>(&sight(epsilon), epsilon));
     Some(surface)
 }
 
@@ -303,11 +313,13 @@ fn nothing_has_no_surface_and_no_bounds() {
             .intersect::<Precise, All>(&ray, Precise::EPSILON)
             .is_none()
     );
-    assert!(
-        !scene
-            .aggregate
-            .any::<Precise, All>(&ray, Precise::EPSILON, Mixed::FAR)
-    );
+    let sight = Sight {
+        ray,
+        t_max: Mixed::FAR,
+        target: PrimitiveId::NONE,
+        is_within: false,
+    };
+    assert!(!scene.aggregate.occludes::<Precise, All>(&sight, Precise::EPSILON));
     assert_eq!(scene.aggregate.bounds(), None);
 }
 

@@ -82,7 +82,7 @@ pub const ALIGNMENT: usize = 8;
 const _: () = assert!(HEADER_LEN.is_multiple_of(ALIGNMENT) && MAX_LEN <= u16::MAX as usize);
 
 /// Bytes of a board's memory kept for the boot block, and so its greatest length.
-pub const MAX_LEN: usize = 0x7000;
+pub const MAX_LEN: usize = 0xA000;
 
 /// In which order a core takes its units.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

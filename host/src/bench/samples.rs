@@ -155,6 +155,7 @@ impl Series {
                 spp: self.spp,
                 cores: self.cores,
                 profile: kind.profile,
+                integrator: None,
                 epsilon: None,
                 termination: End(kind.end),
                 pixels: Pixels::Leased,

@@ -5,6 +5,8 @@ use std::fmt;
 use fixedmath::I16F16;
 use tracer::profile::{Paper, Precise, Profile};
 
+use crate::scene::Integrator;
+
 /// A named set of arithmetic choices; the tracer is compiled once for each.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
 pub enum Arithmetic {
@@ -38,6 +40,15 @@ impl Arithmetic {
             }
             Self::Paper => Paper::EPSILON << magnification.min(10),
             Self::Precise => Precise::EPSILON,
+        }
+    }
+}
+
+impl Arithmetic {
+    /// The integrator that a picture has unless another one is asked for.
+    pub const fn integrator(self) -> Integrator {
+        match self {
+            Self::Paper | Self::Precise => Integrator::Path,
         }
     }
 }

@@ -32,7 +32,7 @@ use crate::render::options::{
     End, Epsilon, EpsilonError, PictureOptions, Pixels, Reference, Size, samples_per_pixel,
 };
 use crate::render::{RecordError, Recorded, record};
-use crate::scene::{Scene, SceneError};
+use crate::scene::{Integrator, Scene, SceneError};
 use code::Code;
 use run::{FORMAT, Run, Subject};
 
@@ -59,6 +59,9 @@ pub struct ProfileOptions {
     /// Samples per pixel in all, a multiple of 4
     #[arg(long, value_name = "N", default_value = "16", value_parser = samples_per_pixel, allow_negative_numbers = true)]
     pub spp: u32,
+    /// How radiance is found: by paths that meet light, or that look for it as well [default: the profile's own]
+    #[arg(long, value_enum)]
+    pub integrator: Option<Integrator>,
     /// How far from a surface a new ray starts at least [default: the profile's own]
     #[arg(long, value_name = "X", allow_negative_numbers = true)]
     pub epsilon: Option<Epsilon>,
@@ -133,6 +136,7 @@ impl ProfileOptions {
             scene,
             size: [self.size.width, self.size.height],
             spp: self.spp,
+            integrator: self.integrator.unwrap_or(self.profile.integrator()).to_string(),
             termination: self.termination.to_string(),
             epsilon_bits: epsilon.to_bits(),
             seed: self.seed,
@@ -147,6 +151,7 @@ impl ProfileOptions {
             spp: self.spp,
             cores: 1,
             profile: self.profile,
+            integrator: self.integrator,
             epsilon: self.epsilon,
             termination: self.termination,
             pixels: Pixels::Leased,

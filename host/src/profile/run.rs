@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::cost::Cost;
 use crate::render::report::BlindSpot;
+use crate::scene::Integrator;
 
 /// The version of the file's form. Another is not compared.
 pub const FORMAT: u32 = 1;
@@ -24,6 +25,9 @@ pub struct Subject {
     pub size: [u16; 2],
     /// Samples a pixel.
     pub spp: u32,
+    /// `path` or `next-event`; before there was a choice it was `path`.
+    #[serde(default = "only_integrator")]
+    pub integrator: String,
     /// `roulette` or `depth:N`.
     pub termination: String,
     /// How far from a surface a new ray starts at least, in 16:16.
@@ -32,6 +36,10 @@ pub struct Subject {
     pub seed: u64,
     /// Cycles that an access to instruction memory is taken to last longer.
     pub code_access: u32,
+}
+
+fn only_integrator() -> String {
+    Integrator::Path.to_string()
 }
 
 /// A profile.
@@ -215,6 +223,7 @@ impl Subject {
                 ("scene", of.scene.clone()),
                 ("size", format!("{}x{}", of.size[0], of.size[1])),
                 ("spp", of.spp.to_string()),
+                ("integrator", of.integrator.clone()),
                 ("termination", of.termination.clone()),
                 ("epsilon", (f64::from(of.epsilon_bits) / 65536.0).to_string()),
                 ("seed", of.seed.to_string()),
@@ -254,6 +263,7 @@ pub(super) mod tests {
                 scene: "cornell".to_owned(),
                 size: [1, 1],
                 spp: 4,
+                integrator: "path".to_owned(),
                 termination: "roulette".to_owned(),
                 epsilon_bits: 16,
                 seed: 1,

@@ -48,10 +48,11 @@ fn head(run: &Run) -> String {
     };
     [
         format!(
-            "{} on {} with {}, {}: {}x{}, {} samples a pixel, {:.2} rays a sample",
+            "{} on {} with {}, {}, {}: {}x{}, {} samples a pixel, {:.2} rays a sample",
             of.scene,
             of.board,
             of.profile,
+            of.integrator,
             of.termination,
             of.size[0],
             of.size[1],

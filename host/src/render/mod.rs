@@ -108,7 +108,7 @@ impl Job {
             Some(Reference::File(path)) => Some(read_reference(path, (width, height))?),
             Some(Reference::None) | None => None,
         };
-        let compiled = compile(&scene, width, height);
+        let compiled = compile(&scene, width, height, options.integrator());
         Ok(Self {
             options: options.clone(),
             scene,

@@ -15,7 +15,7 @@ use crate::firmware::arithmetic::Arithmetic;
 use crate::firmware::board::Board;
 use crate::firmware::{Level, SoftFloat};
 use crate::platform::workspace::{self, NoWorkspace};
-use crate::scene::{MAX_LENGTH, Scale};
+use crate::scene::{Integrator, MAX_LENGTH, Scale};
 
 /// A film of this many pixels takes half a gigabyte.
 const MOST_PIXELS: u32 = 1 << 24;
@@ -37,6 +37,9 @@ pub struct PictureOptions {
     /// Arithmetic
     #[arg(long, value_enum, default_value_t)]
     pub profile: Arithmetic,
+    /// How radiance is found: by paths that meet light, or that look for it as well [default: the profile's own]
+    #[arg(long, value_enum)]
+    pub integrator: Option<Integrator>,
     /// How far along a ray its first hit is at least, in the scene's unit of length [default: the profile's own]
     #[arg(long, value_name = "X", allow_negative_numbers = true)]
     pub epsilon: Option<Epsilon>,
@@ -120,6 +123,11 @@ impl PictureOptions {
                 None => self.profile.epsilon(scale.magnification),
             },
         })
+    }
+
+    /// The integrator.
+    pub fn integrator(&self) -> Integrator {
+        self.integrator.unwrap_or(self.profile.integrator())
     }
 
     /// The folder for the results of the scene of this name.
@@ -380,6 +388,8 @@ mod tests {
             "native",
             "--profile",
             "paper",
+            "--integrator",
+            "next-event",
             "--epsilon",
             "0.1",
             "--termination",
@@ -407,6 +417,7 @@ mod tests {
             (1024, 32, Arithmetic::Paper.epsilon(0))
         );
         assert_eq!((plan.termination, plan.seed), (Termination::Depth(7), u64::MAX));
+        assert_eq!(options.picture.integrator(), Integrator::NextEvent);
         assert_eq!(options.picture.reference, Some(Reference::None));
     }
 
@@ -435,6 +446,7 @@ mod tests {
             (["--cores", "0"], "1..=1024"),
             (["--profile", "fancy"], "paper, precise"),
             (["--board", "versatilepb,z80"], "versatilepb, mps2-an385"),
+            (["--integrator", "photons"], "path, next-event"),
             (["--epsilon", "-0.1"], "from 0 on"),
             (["--epsilon", "inf"], "from 0 on"),
             (["--epsilon", "NaN"], "from 0 on"),

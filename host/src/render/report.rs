@@ -34,6 +34,9 @@ pub struct Report {
     pub backend: String,
     /// Arithmetic profile.
     pub profile: String,
+    /// `path` or `next-event`.
+    #[serde(default)]
+    pub integrator: String,
     /// `roulette` or `depth:N`.
     pub termination: String,
     /// `leased`, `sequential` or `stochastic`.
@@ -301,6 +304,7 @@ mod tests {
             images: Vec::new(),
             backend: "qemu".to_owned(),
             profile: "precise".to_owned(),
+            integrator: "path".to_owned(),
             termination: "roulette".to_owned(),
             pixels: "leased".to_owned(),
             seed: 1,

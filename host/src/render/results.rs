@@ -69,7 +69,10 @@ impl Results<'_> {
             Some(given) => (own, given.clone()),
             None => {
                 let rendered = self.computed_reference(&own);
-                (rendered.pooled_noise(own), rendered.estimate)
+                (
+                    rendered.pooled_noise(own, self.job.options.integrator()),
+                    rendered.estimate,
+                )
             }
         };
         let lockstep = oracle.map(|oracle| LockstepError::between(&image.picture, &oracle));
@@ -206,6 +209,7 @@ impl Results<'_> {
             images: self.origin.images.clone(),
             backend: self.origin.backend.to_owned(),
             profile: SoftFloat::profile(options.profile, self.origin.soft_float),
+            integrator: options.integrator().to_string(),
             termination: options.termination.to_string(),
             pixels: options.pixels.name().to_owned(),
             seed: plan.seed,

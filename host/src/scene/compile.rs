@@ -8,8 +8,9 @@ use tracer::camera::CameraRecord;
 use tracer::geometry::sphere::{HollowSphere, SolidSphere, SphereRecord, VastSphere};
 use tracer::geometry::{PrimitiveId, PrimitiveSet, Shape};
 use tracer::material::{Bsdf, Dielectric, Kind, MaterialId, MaterialRecord};
-use tracer::scene::{Capabilities, Capability, Header};
+use tracer::scene::{Capabilities, Capability, Header, MAX_LIGHT_BYTES};
 
+use super::emitters::Emitters;
 use super::fixed::{q0_32, q16, q30};
 use super::light::Light;
 use super::proof::Proved;
@@ -18,7 +19,7 @@ use super::start::StartPatch;
 use super::validate::is_cut_open;
 use super::vast;
 use super::vector::{cross, normalised};
-use super::{Camera, Material, Scene, Sphere};
+use super::{Camera, Integrator, Material, Scene, Sphere};
 
 /// A scene as cores get it, and a view of it.
 #[derive(Clone, Debug, PartialEq)]
@@ -85,13 +86,14 @@ const _: () = assert!(
 /// A sample lies up to this many pixels outside the film: a tent reaches a sub-pixel beyond the last one's centre.
 const FILTER: f64 = 0.25;
 
-/// Compiles a checked scene, and its camera for a picture of `width` by `height` pixels.
+/// Compiles a checked scene, and its camera for a picture of `width` by `height` pixels, for this integrator.
 ///
 /// # Panics
 /// If the scene is too wide for a core, which a checked one is not.
-pub fn compile(scene: &Scene, width: u16, height: u16) -> CompiledScene {
+pub fn compile(scene: &Scene, width: u16, height: u16, integrator: Integrator) -> CompiledScene {
     let scale = scene.scale();
-    let exponent = Light::of(scene.spheres.iter()).exponent();
+    let (integrator, light) = light_for(scene, integrator);
+    let exponent = light.exponent();
     let scene = near_origin(scale.applied(scene), scale);
     let all: Vec<&Sphere> = scene.spheres.iter().collect();
     let extent = scale.extent(&all, &scene.camera);
@@ -113,8 +115,20 @@ pub fn compile(scene: &Scene, width: u16, height: u16) -> CompiledScene {
         .iter()
         .map(|sphere| vast::record(sphere, extent.middle, proved.origin, id_of(sphere)))
         .collect();
-    let needs = needs(&hollow, &solid, &vast).union(proved.needs());
-    let header = Header::new(needs, materials.len() as u16, proved.grid, counts);
+    let emitters = match integrator {
+        Integrator::Path => Emitters::default(),
+        Integrator::NextEvent => Emitters::of(&spheres, &proved.records(), &extent, MAX_LIGHT_BYTES),
+    };
+    let needs = needs(&hollow, &solid, &vast)
+        .union(proved.needs())
+        .union(emitters.needs());
+    let header = Header::new(
+        needs,
+        materials.len() as u16,
+        proved.grid,
+        counts,
+        emitters.counts(),
+    );
     let blob = [
         bytemuck::bytes_of(&header),
         bytemuck::cast_slice(proved.room.as_slice()),
@@ -122,6 +136,8 @@ pub fn compile(scene: &Scene, width: u16, height: u16) -> CompiledScene {
         bytemuck::cast_slice(&proved.solid_spheres),
         bytemuck::cast_slice(&vast_records),
         bytemuck::cast_slice(&materials),
+        bytemuck::cast_slice(&emitters.caps),
+        bytemuck::cast_slice(&emitters.balls),
     ]
     .concat();
     let blob = Blob::new(&blob);
@@ -136,6 +152,19 @@ pub fn compile(scene: &Scene, width: u16, height: u16) -> CompiledScene {
         camera,
         scale,
         exponent,
+    }
+}
+
+/// The scene's light for this integrator; where that would lose the dimmest, for paths that meet light alone.
+fn light_for(scene: &Scene, integrator: Integrator) -> (Integrator, Light) {
+    let light = Light::of(scene.spheres.iter(), integrator);
+    if light.too_faint().is_some() {
+        (
+            Integrator::Path,
+            Light::of(scene.spheres.iter(), Integrator::Path),
+        )
+    } else {
+        (integrator, light)
     }
 }
 
@@ -298,7 +327,7 @@ mod tests {
 
     #[test]
     fn cornell_needs_all_three_materials_and_decodes() {
-        let compiled = compile(&cornell(), 256, 192);
+        let compiled = compile(&cornell(), 256, 192, Integrator::Path);
         assert_eq!(
             compiled.needs.to_string(),
             "hollow,room,solid,coarse,inside,diffuse,mirror,glass"
@@ -318,7 +347,7 @@ mod tests {
             .retain(|sphere| matches!(sphere.material, Material::Diffuse(_)));
         // The lamp is solid, and black.
         assert_eq!(
-            compile(&scene, 8, 8).needs.to_string(),
+            compile(&scene, 8, 8, Integrator::Path).needs.to_string(),
             "hollow,room,solid,diffuse"
         );
     }
@@ -327,10 +356,10 @@ mod tests {
     #[test]
     fn a_scene_is_the_same_wherever_it_is_seen_from() {
         let mut scene = cornell();
-        let there = compile(&scene, 256, 192);
+        let there = compile(&scene, 256, 192, Integrator::Path);
         scene.camera.position = scene.spheres[6].centre;
         scene.camera.near = 0.5;
-        let inside = compile(&scene, 64, 64);
+        let inside = compile(&scene, 64, 64, Integrator::Path);
         assert_eq!((inside.id, &inside.blob), (there.id, &there.blob));
         assert_ne!(inside.camera, there.camera);
         assert!(inside.needs.has(Capability::TwoSided) && !there.needs.has(Capability::TwoSided));

@@ -41,7 +41,7 @@ fn balls_and_rooms_that_reach_across_the_start_of_rays() {
         "centre = [1.2, 1.2, 0]\nradius = 0.7",
     );
     let scene = Scene::parse("cut.toml", &cut).unwrap();
-    let compiled = compile(&scene, 64, 48);
+    let compiled = compile(&scene, 64, 48, Integrator::Path);
     assert_eq!(compiled.needs.to_string(), "hollow,solid,coarse,twosided,diffuse");
     // The same out of the picture, and behind where rays start.
     for centre in ["[9, 1.2, 0]", "[1.2, 1.2, -8]"] {
@@ -49,7 +49,12 @@ fn balls_and_rooms_that_reach_across_the_start_of_rays() {
             "centre = [0, 0, -5]\nradius = 2",
             &format!("centre = {centre}\nradius = 0.7"),
         );
-        let free = compile(&Scene::parse("free.toml", &free).unwrap(), 64, 48);
+        let free = compile(
+            &Scene::parse("free.toml", &free).unwrap(),
+            64,
+            48,
+            Integrator::Path,
+        );
         assert_eq!(free.needs.to_string(), "hollow,solid,coarse,diffuse");
     }
     // A room that ends between the middle and the edge, to the left.
@@ -105,7 +110,7 @@ fn solids_as_large_as_the_reach() {
 
 /// What the compiler makes of any accepted scene is what a core can work with.
 pub(super) fn check_compiled(scene: &Scene) {
-    let compiled = compile(scene, 64, 48);
+    let compiled = compile(scene, 64, 48, Integrator::Path);
     let primitives = compiled.view().aggregate.primitives;
     let hollow = primitives.hollow_spheres.iter().map(|sphere| sphere.0);
     for record in hollow.chain(primitives.solid_spheres.iter().map(|sphere| sphere.sphere)) {
@@ -156,8 +161,8 @@ fn a_plane_width_lets_the_cornell_box_have_any_shape_and_leaves_its_own_as_it_wa
     }
     for (width, height) in [(256, 192), (64, 48), (512, 512), (7, 5), (3, 4)] {
         assert_eq!(
-            compile(&scene, width, height),
-            compile(&cornell_of_any_width(), width, height),
+            compile(&scene, width, height, Integrator::Path),
+            compile(&cornell_of_any_width(), width, height, Integrator::Path),
             "{width}x{height}"
         );
     }

@@ -5,7 +5,7 @@
 //! it is written is rendered with every emission times 2^exponent, and its picture divided by that. All scenes whose light
 //! fits have the exponent 0.
 
-use super::{Material, Sphere};
+use super::{Integrator, Material, Sphere};
 
 /// The most samples of one pixel in one unit.
 pub(super) const UNIT_SAMPLES: u16 = 64;
@@ -58,7 +58,7 @@ pub(super) struct TooFaint {
 }
 
 impl Light {
-    pub(super) fn of<'s>(spheres: impl Iterator<Item = &'s Sphere> + Clone) -> Self {
+    pub(super) fn of<'s>(spheres: impl Iterator<Item = &'s Sphere> + Clone, integrator: Integrator) -> Self {
         let least = |value: fn(&Sphere) -> [f64; 3]| {
             let all = (0..)
                 .zip(spheres.clone())
@@ -77,11 +77,22 @@ impl Light {
             .clone()
             .map(|sphere| most(reflectance(sphere)))
             .fold(0.0, f64::max);
+        let albedo = spheres
+            .clone()
+            .filter(|sphere| matches!(sphere.material, Material::Diffuse(_)))
+            .map(|sphere| most(reflectance(sphere)))
+            .fold(0.0, f64::max);
+        let looked_for = match integrator {
+            Integrator::Path => 0.0,
+            // At each diffuse surface, of which a path meets as many as it survives.
+            Integrator::NextEvent => brightest,
+        };
         Self {
             brightest,
             dimmest: least(|sphere| sphere.emission),
             least_reflectance: least(reflectance),
-            largest_sum: largest_sum(brightest, brightest_on_the_way, survival),
+            largest_sum: largest_sum(brightest, brightest_on_the_way, survival)
+                + largest_sum(0.0, looked_for, albedo),
         }
     }
 
@@ -198,7 +209,7 @@ mod tests {
     }
 
     fn light(spheres: &[Sphere]) -> Light {
-        Light::of(spheres.iter())
+        Light::of(spheres.iter(), Integrator::Path)
     }
 
     #[test]

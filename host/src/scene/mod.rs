@@ -5,6 +5,7 @@
 //! it into the bytes a core reads is the scene compiler's business, which also chooses a core's unit of length.
 
 mod compile;
+mod emitters;
 mod fixed;
 mod light;
 mod limits;
@@ -37,6 +38,35 @@ pub struct Scene {
     pub camera: Camera,
     /// Everything in it, in the file's order.
     pub spheres: Vec<Sphere>,
+}
+
+/// How the radiance along a camera ray is found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, clap::ValueEnum, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Integrator {
+    /// By paths that meet light, as published.
+    Path,
+    /// By paths that look for light as well, at each surface that is not specular.
+    NextEvent,
+}
+
+impl Integrator {
+    /// All there are.
+    pub const ALL: [Self; 2] = [Self::Path, Self::NextEvent];
+
+    /// The name used by `--integrator` and in reports.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Path => "path",
+            Self::NextEvent => "next-event",
+        }
+    }
+}
+
+impl std::fmt::Display for Integrator {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.pad(self.name())
+    }
 }
 
 /// A pinhole camera whose image plane stands at distance 1.
@@ -217,6 +247,8 @@ impl Scene {
     }
 }
 
+#[cfg(test)]
+mod emitters_tests;
 #[cfg(test)]
 mod fitting_tests;
 #[cfg(test)]

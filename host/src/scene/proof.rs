@@ -73,6 +73,12 @@ impl Proved {
         }
     }
 
+    /// The records of all these spheres, hollow ones first.
+    pub(super) fn records(&self) -> Vec<SphereRecord> {
+        let solid = self.solid_spheres.iter().map(|solid| solid.sphere);
+        self.hollow_spheres.iter().copied().chain(solid).collect()
+    }
+
     /// What an image must have code for to make use of it.
     pub(super) fn needs(&self) -> Capabilities {
         let room = self

@@ -55,8 +55,8 @@ proptest! {
     #[test]
     fn a_scene_in_another_unit_is_the_same_for_a_core(which in 0..4usize, power in -40..40i32) {
         let scene = &scenes()[which];
-        let there = compile(&times(scene, 2f64.powi(power)), 64, 48);
-        let here = compile(scene, 64, 48);
+        let there = compile(&times(scene, 2f64.powi(power)), 64, 48, Integrator::Path);
+        let here = compile(scene, 64, 48, Integrator::Path);
         prop_assert_eq!(there.scale.exponent, here.scale.exponent - power);
         prop_assert_eq!(there.scale.magnification, here.scale.magnification);
         prop_assert_eq!(CompiledScene { scale: here.scale, ..there }, here);
@@ -74,7 +74,7 @@ proptest! {
 
 #[test]
 fn the_cornell_box_is_as_it_is_written() {
-    let compiled = compile(&scenes()[1], 64, 48);
+    let compiled = compile(&scenes()[1], 64, 48, Integrator::Path);
     assert_eq!((compiled.scale.exponent, compiled.scale.magnification), (0, 0));
     assert!(compiled.is_room());
 }
@@ -82,7 +82,7 @@ fn the_cornell_box_is_as_it_is_written() {
 #[test]
 fn walls_that_would_leave_too_little_of_the_rest_are_vast() {
     for (scene, vast) in scenes().iter().zip([0, 0, 6, 2]) {
-        let compiled = compile(scene, 64, 48);
+        let compiled = compile(scene, 64, 48, Integrator::Path);
         let primitives = compiled.view().aggregate.primitives;
         assert_eq!(primitives.vast_spheres.len(), vast, "{scene:?}");
         let smallest = scene
@@ -106,7 +106,10 @@ fn a_scene_far_from_the_origin_is_moved_there() {
     for sphere in &mut scene.spheres {
         sphere.centre = [0, 1, 2].map(|i| sphere.centre[i] + away[i]);
     }
-    let (there, here) = (compile(&scene, 64, 48), compile(&scenes()[0], 64, 48));
+    let (there, here) = (
+        compile(&scene, 64, 48, Integrator::Path),
+        compile(&scenes()[0], 64, 48, Integrator::Path),
+    );
     assert_eq!((there.id, there.camera), (here.id, here.camera));
 }
 

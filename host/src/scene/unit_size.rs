@@ -3,13 +3,13 @@
 use std::cell::Cell;
 
 use tracer::camera::Camera;
-use tracer::integrator::{Integrator, Path};
+use tracer::integrator::{Integrator as _, Path};
 use tracer::profile::{Precise, Profile};
 use tracer::scene::All;
 use tracer::unit::{Plan, Termination, walk};
 
 use super::light::UNIT_SAMPLES;
-use super::{CompiledScene, Scene, compile};
+use super::{CompiledScene, Integrator, Scene, compile};
 
 /// The fewest: one for each sub-pixel.
 const FEWEST: u16 = 4;
@@ -53,7 +53,7 @@ impl Pilot {
     fn new(scene: &Scene, termination: Termination) -> Self {
         let (width, height) = PILOT;
         Self {
-            compiled: compile(scene, width, height),
+            compiled: compile(scene, width, height, Integrator::Path),
             plan: Plan {
                 width,
                 height,

@@ -6,7 +6,7 @@ use super::reach::REACH;
 use super::scale::Scale;
 use super::start::StartPatch;
 use super::vector::{cross, length};
-use super::{Camera, Material, Sphere};
+use super::{Camera, Integrator, Material, Sphere};
 
 /// Notes every fault of `draft`.
 pub(super) fn validate(draft: &Draft, source: &mut Source<'_>) {
@@ -50,7 +50,10 @@ fn something_shines(draft: &Draft, source: &mut Source<'_>) {
 }
 
 fn light_fits(draft: &Draft, source: &mut Source<'_>) {
-    let light = Light::of(draft.spheres.iter().map(|placed| &placed.sphere));
+    let light = Light::of(
+        draft.spheres.iter().map(|placed| &placed.sphere),
+        Integrator::Path,
+    );
     if let Some(faint) = light.too_faint() {
         let placed = &draft.spheres[faint.sphere];
         source.fault(

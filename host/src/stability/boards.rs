@@ -13,7 +13,7 @@ use crate::firmware::board::Board;
 use crate::oracle::direct;
 use crate::render::options::RenderOptions;
 use crate::render::render;
-use crate::scene::{Scene, compile};
+use crate::scene::{Integrator, Scene, compile};
 
 /// The part.
 pub(super) const PART: Part = Part {
@@ -73,7 +73,7 @@ fn measure(effort: &Effort) -> Result<Findings, Error> {
 }
 
 fn on_host(scene: &Scene, arithmetic: Arithmetic) -> String {
-    let compiled = compile(scene, SIZE[0], SIZE[1]);
+    let compiled = compile(scene, SIZE[0], SIZE[1], Integrator::Path);
     let plan = plan(arithmetic, &compiled, SIZE, SPP);
     let film = match arithmetic {
         Arithmetic::Precise => direct::film::<Precise>(&compiled, &plan),

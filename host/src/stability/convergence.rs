@@ -11,7 +11,7 @@ use crate::oracle::compare::{Comparison, Tile, compare};
 use crate::oracle::lockstep::{self, Paired};
 use crate::oracle::reference::Rendered;
 use crate::platform::workspace;
-use crate::scene::{CompiledScene, Scene, compile};
+use crate::scene::{CompiledScene, Integrator, Scene, compile};
 
 /// The part.
 pub(super) const PART: Part = Part {
@@ -80,7 +80,7 @@ fn measure(effort: &Effort) -> Result<Findings, Error> {
     let mut findings = Findings::default();
     for (file, plot_name) in SCENES {
         let scene = Scene::load(&workspace::file(file)?)?;
-        let compiled = compile(&scene, SIZE[0], SIZE[1]);
+        let compiled = compile(&scene, SIZE[0], SIZE[1], Integrator::Path);
         let rendered = reference(effort, &scene, SIZE, most);
         let precise = course::<Precise>(effort, Arithmetic::Precise, &compiled, &rendered, most);
         let paper = course::<Paper>(effort, Arithmetic::Paper, &compiled, &rendered, most / 4);
@@ -252,7 +252,10 @@ fn slope_of_display(radiance: f64) -> f64 {
 fn biases_row(file: &str, course: &Course, rendered: &Rendered) -> Result<(Vec<String>, Vec<String>), Error> {
     let last = &course.last;
     let lockstep = beside_double(last)?;
-    let independent = compare(&rendered.pooled_noise(last.picture.clone()), &rendered.estimate)?;
+    let independent = compare(
+        &rendered.pooled_noise(last.picture.clone(), Integrator::Path),
+        &rendered.estimate,
+    )?;
     let (bias, noise) = (
         lockstep.bias.unwrap_or_default(),
         lockstep.bias_standard_error.unwrap_or_default(),
@@ -313,7 +316,7 @@ mod tests {
     fn planted_faults_are_found() {
         let effort = Effort::new(100, ProgressBar::hidden());
         let scene = Scene::load(&workspace::file("scenes/cornell.toml").unwrap()).unwrap();
-        let compiled = compile(&scene, SIZE[0], SIZE[1]);
+        let compiled = compile(&scene, SIZE[0], SIZE[1], Integrator::Path);
         let rendered = reference(&effort, &scene, SIZE, 16);
         let course = course::<Precise>(&effort, Arithmetic::Precise, &compiled, &rendered, 16);
         let faults = |change: &dyn Fn(usize, f64) -> f64| {

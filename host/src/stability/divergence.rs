@@ -11,7 +11,7 @@ use crate::oracle::divergence::{
     BOUNCES, Cause, Divergence, Explicable, Quantity, explain, explain_rounding,
 };
 use crate::platform::workspace;
-use crate::scene::{CompiledScene, Scene, compile};
+use crate::scene::{CompiledScene, Integrator, Scene, compile};
 
 /// The part.
 pub(super) const PART: Part = Part {
@@ -71,7 +71,7 @@ fn measure(effort: &Effort) -> Result<Findings, Error> {
     let mut findings = Findings::default();
     for (file, plots) in SCENES {
         let scene = Scene::load(&workspace::file(file)?)?;
-        let compiled = compile(&scene, SIZE[0], SIZE[1]);
+        let compiled = compile(&scene, SIZE[0], SIZE[1], Integrator::Path);
         let [precise, paper] = plots.map_or([None; 2], |names| names.map(Some));
         let plan = |arithmetic, spp| plan(arithmetic, &compiled, SIZE, spp);
         let (ours, published) = (plan(Arithmetic::Precise, 4 * spp), plan(Arithmetic::Paper, spp));
@@ -79,9 +79,11 @@ fn measure(effort: &Effort) -> Result<Findings, Error> {
         add::<Paper>(&mut findings, effort, &compiled, file, &published, paper);
     }
     let scene = Scene::load(&workspace::file(SCENES[0].0)?)?;
-    findings
-        .tables
-        .push(by_quantity(effort, &compile(&scene, SIZE[0], SIZE[1]), 4 * spp));
+    findings.tables.push(by_quantity(
+        effort,
+        &compile(&scene, SIZE[0], SIZE[1], Integrator::Path),
+        4 * spp,
+    ));
     Ok(findings)
 }
 

@@ -13,7 +13,7 @@ use crate::image::picture::displayed;
 use crate::oracle::compare::compare;
 use crate::oracle::lockstep::{self, Paired};
 use crate::platform::workspace;
-use crate::scene::{CompiledScene, Scene, compile};
+use crate::scene::{CompiledScene, Integrator, Scene, compile};
 
 /// The part.
 pub(super) const PART: Part = Part {
@@ -51,7 +51,7 @@ fn measure(effort: &Effort) -> Result<Findings, Error> {
     let pixels = u64::from(SIZE[0]) * u64::from(SIZE[1]);
     effort.expect(2 * pixels * (u64::from(two) + EPSILONS.len() as u64 * u64::from(three)));
     let scene = Scene::load(&workspace::file(SCENE)?)?;
-    let compiled = compile(&scene, SIZE[0], SIZE[1]);
+    let compiled = compile(&scene, SIZE[0], SIZE[1], Integrator::Path);
     let mut findings = Findings::default();
     figure_2(&mut findings, effort, &compiled, two)?;
     figure_3(&mut findings, effort, &compiled, three)?;

@@ -18,7 +18,7 @@ use crate::oracle::direct;
 use crate::oracle::lockstep::{self, Paired};
 use crate::oracle::reference::Rendered;
 use crate::platform::workspace;
-use crate::scene::{Scene, compile};
+use crate::scene::{Integrator, Scene, compile};
 
 /// The part.
 pub(super) const PART: Part = Part {
@@ -137,7 +137,7 @@ struct Share {
 
 impl Found {
     fn of(effort: &Effort, scene: &Scene, spp: u32) -> Result<Self, Error> {
-        let compiled = compile(scene, SIZE[0], SIZE[1]);
+        let compiled = compile(scene, SIZE[0], SIZE[1], Integrator::Path);
         let plan = |arithmetic, spp| plan(arithmetic, &compiled, SIZE, spp);
         let done = |samples| effort.done(samples);
         let precise = lockstep::render::<Precise>(&compiled, &plan(Arithmetic::Precise, spp), done);
@@ -202,7 +202,10 @@ impl Found {
 
 impl Rendering {
     fn of(paired: &Paired, rendered: &Rendered) -> Result<Self, Error> {
-        let found = compare(&rendered.pooled_noise(paired.picture.clone()), &rendered.estimate)?;
+        let found = compare(
+            &rendered.pooled_noise(paired.picture.clone(), Integrator::Path),
+            &rendered.estimate,
+        )?;
         let (picture, double) = paired.difference();
         let arithmetic = compare(&picture, &double)?;
         Ok(Self {

@@ -2,7 +2,7 @@
 
 use core::marker::PhantomData;
 
-use super::{Aggregate, Exit, Room, RoomNumbers};
+use super::{Aggregate, Exit, Room, RoomNumbers, Sight};
 use crate::arithmetic::Formats;
 use crate::capability::{Capabilities, Capability, Needs};
 use crate::geometry::{
@@ -79,6 +79,27 @@ impl Linear<'_> {
         self.closest::<P, Walls<F>>(ray, epsilon)
     }
 
+    /// Whether a primitive of the kinds in `F` stands in a sight.
+    #[inline]
+    fn any<P: Profile, F: Needs>(&self, sight: &Sight<P::Numbers>, epsilon: Length<P>) -> bool {
+        let mut occluder = Occluder::<P, F> {
+            list: self,
+            sight,
+            epsilon,
+            found: false,
+            needs: PhantomData,
+        };
+        self.primitives.visit(&mut occluder);
+        occluder.found
+    }
+
+    /// Whether a hollow sphere does, kept apart from what happens more often.
+    #[cold]
+    #[inline(never)]
+    fn any_wall<P: Profile, F: Needs>(&self, sight: &Sight<P::Numbers>, epsilon: Length<P>) -> bool {
+        self.any::<P, Walls<F>>(sight, epsilon)
+    }
+
     /// The surface at a hit; none where there is no such primitive.
     #[inline]
     fn interaction<P: Profile, F: Needs>(
@@ -132,6 +153,31 @@ impl<F: Needs> Needs for Walls<F> {
     const NEEDS: Capabilities = Capabilities::of(&[Capability::Hollow]);
 }
 
+/// Primitives of a kind by how many are left with them: the one number that a loop over them has to count anyway.
+#[derive(Clone, Copy)]
+struct Countdown {
+    /// The id after the last one.
+    end: usize,
+}
+
+impl Countdown {
+    #[inline]
+    fn new(first: usize, count: usize) -> Self {
+        Self { end: first + count }
+    }
+
+    /// How many are left at a primitive; no such number at one of another kind.
+    #[inline]
+    fn left_at(self, primitive: PrimitiveId) -> usize {
+        self.end.wrapping_sub(primitive.index())
+    }
+
+    #[inline]
+    fn primitive(self, left: usize) -> PrimitiveId {
+        PrimitiveId::new(self.end - left)
+    }
+}
+
 /// The nearest hit so far.
 struct Closest<'a, P: Profile, F> {
     list: &'a Linear<'a>,
@@ -149,18 +195,14 @@ impl<P: Profile, F: Needs> Visitor for Closest<'_, P, F> {
         if !F::NEEDS.has(S::CAPABILITY) {
             return;
         }
-        // A primitive is known by how many are left with it: the one number that the loop has to count anyway.
-        let left_at = |index: usize| shapes.len().wrapping_sub(index.wrapping_sub(first));
-        let index_at = |left: usize| first + shapes.len() - left;
-        let departed = left_at(self.ray.departed.index());
+        let countdown = Countdown::new(first, shapes.len());
+        let departed = countdown.left_at(self.ray.departed);
         let prepared = S::prepare::<P, F>(self.ray, self.list.grid);
         let (mut nearest, mut left) = (0, shapes);
         while let [shape, rest @ ..] = left {
             let standing = Standing {
                 departs: left.len() == departed,
-                two_sided: self
-                    .list
-                    .is_two_sided::<F>(PrimitiveId::new(index_at(left.len()))),
+                two_sided: self.list.is_two_sided::<F>(countdown.primitive(left.len())),
             };
             if let Some(t) = shape.closest::<P, F>(self.ray, &prepared, standing, self.epsilon, self.t_max) {
                 (self.t_max, nearest) = (t, left.len());
@@ -168,30 +210,50 @@ impl<P: Profile, F: Needs> Visitor for Closest<'_, P, F> {
             left = rest;
         }
         if nearest != 0 {
-            self.nearest = PrimitiveId::new(index_at(nearest));
+            self.nearest = countdown.primitive(nearest);
         }
     }
 }
 
-/// Whether there is a hit.
-struct Any<'a, P: Profile, F> {
+/// Whether something stands in a sight.
+struct Occluder<'a, P: Profile, F> {
     list: &'a Linear<'a>,
-    ray: &'a Ray<P::Numbers>,
+    sight: &'a Sight<P::Numbers>,
     epsilon: Length<P>,
-    t_max: Length<P>,
     found: bool,
     needs: PhantomData<F>,
 }
 
-impl<P: Profile, F: Needs> Visitor for Any<'_, P, F> {
+impl<P: Profile, F: Needs> Visitor for Occluder<'_, P, F> {
+    #[inline]
     fn visit<S: Shape>(&mut self, first: usize, shapes: &[S]) {
-        let prepared = S::prepare::<P, F>(self.ray, self.list.grid);
-        self.found = self.found
-            || F::NEEDS.has(S::CAPABILITY)
-                && (first..).zip(shapes).any(|(index, shape)| {
-                    let standing = self.list.standing::<P, F>(self.ray, PrimitiveId::new(index));
-                    shape.any::<P, F>(self.ray, &prepared, standing, self.epsilon, self.t_max)
-                });
+        if self.found || !F::NEEDS.has(S::CAPABILITY) {
+            return;
+        }
+        let Sight {
+            ray,
+            t_max,
+            target,
+            is_within,
+        } = self.sight;
+        let countdown = Countdown::new(first, shapes.len());
+        let (departed, target) = (countdown.left_at(ray.departed), countdown.left_at(*target));
+        let prepared = S::prepare::<P, F>(ray, self.list.grid);
+        let mut left = shapes;
+        while let [shape, rest @ ..] = left {
+            let standing = Standing {
+                departs: left.len() == departed,
+                two_sided: self.list.is_two_sided::<F>(countdown.primitive(left.len())),
+            };
+            if left.len() != target
+                && !(*is_within && shape.encloses())
+                && shape.any::<P, F>(ray, &prepared, standing, self.epsilon, *t_max)
+            {
+                self.found = true;
+                return;
+            }
+            left = rest;
+        }
     }
 }
 
@@ -248,17 +310,10 @@ impl Aggregate for Linear<'_> {
         }
     }
 
-    fn any<P: Profile, F: Needs>(&self, ray: &Ray<P::Numbers>, epsilon: Length<P>, t_max: Length<P>) -> bool {
-        let mut any = Any::<P, F> {
-            list: self,
-            ray,
-            epsilon,
-            t_max,
-            found: false,
-            needs: PhantomData,
-        };
-        self.primitives.visit(&mut any);
-        any.found
+    #[inline]
+    fn occludes<P: Profile, F: Needs>(&self, sight: &Sight<P::Numbers>, epsilon: Length<P>) -> bool {
+        self.any::<P, Within<F>>(sight, epsilon)
+            || F::NEEDS.has(Capability::Hollow) && !sight.is_within && self.any_wall::<P, F>(sight, epsilon)
     }
 
     fn bounds(&self) -> Option<Bounds> {

@@ -8,8 +8,21 @@ pub use room::{Exit, FLAT, Room, RoomNumbers, Wall};
 
 use crate::arithmetic::Formats;
 use crate::capability::Needs;
-use crate::geometry::{Bounds, Interaction, Ray};
+use crate::geometry::{Bounds, Interaction, PrimitiveId, Ray};
 use crate::profile::Profile;
+
+/// A straight way to a point of a primitive's surface.
+#[derive(Clone, Copy, Debug)]
+pub struct Sight<N: Formats> {
+    /// Where it starts, and which way.
+    pub ray: Ray<N>,
+    /// How far it goes.
+    pub t_max: N::Length,
+    /// Whose surface it ends at, on the side that is seen from there; none for whoever's.
+    pub target: PrimitiveId,
+    /// Both ends lie within all shapes that enclose the scene, which are convex: none of those stands in it.
+    pub is_within: bool,
+}
 
 /// Primitives, and a way to find the nearest one that a ray meets.
 pub trait Aggregate {
@@ -20,12 +33,11 @@ pub trait Aggregate {
         epsilon: <P::Numbers as Formats>::Length,
     ) -> Option<Interaction<P::Numbers>>;
 
-    /// Whether `ray` hits anything nearer than `t_max`.
-    fn any<P: Profile, F: Needs>(
+    /// Whether anything stands in a sight. What is nearer than `epsilon` may be the surface that it starts from.
+    fn occludes<P: Profile, F: Needs>(
         &self,
-        ray: &Ray<P::Numbers>,
+        sight: &Sight<P::Numbers>,
         epsilon: <P::Numbers as Formats>::Length,
-        t_max: <P::Numbers as Formats>::Length,
     ) -> bool;
 
     /// The box around all of it; none where there is nothing.

@@ -127,6 +127,12 @@ pub trait Shape: Pod {
             .is_some()
     }
 
+    /// Whether all of the scene is within it, and it is seen from there only.
+    #[inline]
+    fn encloses(&self) -> bool {
+        false
+    }
+
     /// The surface at `t` along `ray`.
     fn interaction<P: Profile, F: Needs>(
         &self,

@@ -1,12 +1,14 @@
-//! The path integrator: a walk from surface to surface.
+//! The path integrator: a walk from surface to surface, which looks for light at those that are not specular if the scene says where.
 
 use core::marker::PhantomData;
+
+use fixedmath::U0F32;
 
 use super::{Integrator, Sample};
 use crate::aggregate::Aggregate;
 use crate::arithmetic::{Formats, Sampling};
 use crate::capability::{Capabilities, Capability, Needs};
-use crate::geometry::Ray;
+use crate::geometry::{Interaction, Ray};
 use crate::material::{MaterialRecord, RadianceNumbers};
 use crate::plan::{Plan, Termination};
 use crate::profile::Profile;
@@ -52,6 +54,8 @@ impl<P: Profile, F: Needs> Integrator<P> for Path<P, F> {
         let mut radiance = [P::Numbers::DARK; 3];
         let mut throughput = [P::Numbers::FULL; 3];
         let mut rays = 0;
+        // The surface that the ray comes from has looked for light.
+        let mut has_looked = false;
         loop {
             rays += 1;
             let Some(interaction) = scene.aggregate.intersect::<P, F>(&ray, self.epsilon) else {
@@ -62,20 +66,26 @@ impl<P: Profile, F: Needs> Integrator<P> for Path<P, F> {
                 break;
             };
             if material.emits() {
-                for channel in 0..3 {
-                    radiance[channel] = radiance[channel]
-                        + P::Numbers::emitted(throughput[channel], material.emission[channel]);
-                }
+                let arriving = if has_looked {
+                    let share = scene.lights.share::<P::Numbers, F>(&ray, &interaction);
+                    throughput.map(|throughput| P::Numbers::attenuate(throughput, share))
+                } else {
+                    throughput
+                };
+                add_emission::<P::Numbers>(&mut radiance, arriving, material);
             }
             if material.absorbs_all() {
                 break;
             }
+            has_looked = F::NEEDS.has(Capability::Lights) && !material.is_specular();
+            if has_looked && !self.ends_at(rays) {
+                let reflected = attenuated::<P::Numbers>(throughput, &material.reflectance);
+                self.look_for_light(scene, &interaction, reflected, &mut radiance, random);
+            }
             let Some(share) = self.share(material, rays, random) else {
                 break;
             };
-            for channel in 0..3 {
-                throughput[channel] = P::Numbers::attenuate(throughput[channel], share[channel]);
-            }
+            throughput = attenuated::<P::Numbers>(throughput, share);
             // Scene::view refuses what the image lacks.
             let Some(direction) = material.sample::<P, F>(ray.direction, &interaction, random) else {
                 break;
@@ -91,25 +101,71 @@ impl<P: Profile, F: Needs> Integrator<P> for Path<P, F> {
     }
 }
 
+/// What is left of `throughput` after a reflection.
+#[inline]
+fn attenuated<N: RadianceNumbers>(throughput: [N::Weight; 3], share: &[U0F32; 3]) -> [N::Weight; 3] {
+    [0, 1, 2].map(|channel| N::attenuate(throughput[channel], N::weight(share[channel])))
+}
+
+/// Adds what a material emits of what arrives at the camera.
+#[inline]
+fn add_emission<N: RadianceNumbers>(
+    radiance: &mut [N::Radiance; 3],
+    arriving: [N::Weight; 3],
+    material: &MaterialRecord,
+) {
+    for channel in 0..3 {
+        radiance[channel] = radiance[channel] + N::emitted(arriving[channel], material.emission[channel]);
+    }
+}
+
 impl<P: Profile, F: Needs> Path<P, F> {
+    /// Whether a path ends at its surface number `bounces` for certain.
+    #[inline]
+    fn ends_at(&self, bounces: u32) -> bool {
+        bounces > self.certain
+            && (!F::NEEDS.has(Capability::Roulette) || self.termination != Termination::Roulette)
+    }
+
+    /// Adds the light that a surface reflects from an emitter, of which `reflected` arrives at the camera.
+    #[inline]
+    fn look_for_light(
+        &self,
+        scene: &Scene<'_>,
+        interaction: &Interaction<P::Numbers>,
+        reflected: [<P::Numbers as RadianceNumbers>::Weight; 3],
+        radiance: &mut [<P::Numbers as RadianceNumbers>::Radiance; 3],
+        random: &mut P::Random,
+    ) {
+        let Some(connection) = scene.lights.connect::<P, F>(interaction, random) else {
+            return;
+        };
+        if scene.aggregate.occludes::<P, F>(&connection.sight, self.epsilon) {
+            return;
+        }
+        // Scene::view has seen to it that there is one.
+        let Some(emitter) = scene.materials.get(connection.material.index()) else {
+            return;
+        };
+        let arriving = reflected.map(|reflected| P::Numbers::attenuate(reflected, connection.share));
+        add_emission::<P::Numbers>(radiance, arriving, emitter);
+    }
+
     /// What is left of each channel after bounce `bounces`, or `None` where the path ends there.
     #[inline]
-    fn share(
+    fn share<'m>(
         &self,
-        material: &MaterialRecord,
+        material: &'m MaterialRecord,
         bounces: u32,
         random: &mut P::Random,
-    ) -> Option<[<P::Numbers as RadianceNumbers>::Weight; 3]> {
-        let mut share = &material.reflectance;
-        if bounces > self.certain {
-            if !F::NEEDS.has(Capability::Roulette) || self.termination != Termination::Roulette {
-                return None;
-            }
-            if !P::Numbers::below(random.fraction(), P::Numbers::unit(material.continuation)) {
-                return None;
-            }
-            share = &material.continued;
+    ) -> Option<&'m [U0F32; 3]> {
+        if bounces <= self.certain {
+            return Some(&material.reflectance);
         }
-        Some(share.map(P::Numbers::weight))
+        if self.ends_at(bounces) {
+            return None;
+        }
+        P::Numbers::below(random.fraction(), P::Numbers::unit(material.continuation))
+            .then_some(&material.continued)
     }
 }

@@ -52,6 +52,7 @@ pub trait DielectricNumbers: Sampling {
 
 impl Bsdf for Dielectric {
     const CAPABILITY: Capability = Capability::Glass;
+    const IS_SPECULAR: bool = true;
 
     #[inline]
     fn sample<P: Profile>(

@@ -21,6 +21,7 @@ pub struct Diffuse {
 
 impl Bsdf for Diffuse {
     const CAPABILITY: Capability = Capability::Diffuse;
+    const IS_SPECULAR: bool = false;
 
     #[inline]
     fn sample<P: Profile>(

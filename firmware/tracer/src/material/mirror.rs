@@ -19,6 +19,7 @@ pub struct Mirror {
 
 impl Bsdf for Mirror {
     const CAPABILITY: Capability = Capability::Mirror;
+    const IS_SPECULAR: bool = true;
 
     #[inline]
     fn sample<P: Profile>(

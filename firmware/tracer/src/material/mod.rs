@@ -28,6 +28,9 @@ pub trait Bsdf: Pod {
     /// What an image must be capable of for it.
     const CAPABILITY: Capability;
 
+    /// Whether it sends light on in so few directions that none leads to an emitter but by chance.
+    const IS_SPECULAR: bool;
+
     /// A direction in which light that comes along `direction` goes on, in proportion to the BSDF and the cosine, so that no
     /// weight but the material's reflectance is needed.
     fn sample<P: Profile>(

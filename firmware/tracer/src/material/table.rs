@@ -74,6 +74,13 @@ macro_rules! bsdfs {
                 })
             }
 
+            /// Whether its BSDF is specular.
+            #[inline]
+            pub fn is_specular(&self) -> bool {
+                const SPECULAR: u32 = 0 $(| (<$bsdf as Bsdf>::IS_SPECULAR as u32) << Kind::$bsdf as u32)+;
+                SPECULAR >> (self.bsdf & 31) & 1 == 1
+            }
+
             /// Samples the BSDF; none where the image was built without it.
             #[inline]
             pub fn sample<P: Profile, F: $crate::capability::Needs>(

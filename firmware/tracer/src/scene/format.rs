@@ -1,12 +1,13 @@
 //! A scene's bytes: a header, what has been proved of its room if there is one, the records of each kind of shape in the order of
-//! [`crate::geometry`]'s list, the materials.
+//! [`crate::geometry`]'s list, the materials, and the emitters if any are looked for.
 //!
 //! | bytes | header |
 //! | --- | --- |
-//! | 4 | magic "FXS4" |
+//! | 4 | magic "FXS5" |
 //! | 4 | what the scene needs: a bit for each [`Capability`](crate::capability::Capability) in its list's order |
 //! | 2 | materials |
 //! | 2 | the shift of the scene's grid |
+//! | 2 a kind | emitters of each kind that are looked for: caps, then balls |
 //! | 2 a kind | primitives of each kind of shape |
 //! | to a multiple of 8 | zero |
 //!
@@ -20,6 +21,7 @@ use crate::aggregate::{Linear, Room};
 use crate::blob::{BlobError, take_records};
 use crate::capability::{Capabilities, Capability};
 use crate::geometry::{Grid, KINDS, MAX_PRIMITIVES, PrimitiveSet, Primitives, Shape, Visitor};
+use crate::light::{BallLight, Lights};
 use crate::material::MaterialRecord;
 
 const _: () = assert!(
@@ -28,16 +30,21 @@ const _: () = assert!(
 );
 
 /// The longest scene.
-pub const MAX_BYTES: usize =
-    size_of::<Header>() + size_of::<Room>() + MAX_PRIMITIVES * (MAX_RECORD + size_of::<MaterialRecord>());
+pub const MAX_BYTES: usize = size_of::<Header>()
+    + size_of::<Room>()
+    + MAX_PRIMITIVES * (MAX_RECORD + size_of::<MaterialRecord>())
+    + MAX_LIGHT_BYTES;
+
+/// The most bytes that emitters take: as many balls as there may be, or 116 caps.
+pub const MAX_LIGHT_BYTES: usize = MAX_PRIMITIVES * size_of::<BallLight>();
 
 /// The longest record of a shape.
 const MAX_RECORD: usize = 48;
 
-const MAGIC: [u8; 4] = *b"FXS4";
+const MAGIC: [u8; 4] = *b"FXS5";
 
 /// Kinds of shape, filled up to a multiple of 8 bytes with the fields before.
-const COUNTS: usize = (KINDS + 2).next_multiple_of(4) - 2;
+const COUNTS: usize = (KINDS + 4).next_multiple_of(4) - 4;
 
 /// What comes before the records.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
@@ -47,14 +54,21 @@ pub struct Header {
     needs: Capabilities,
     materials: u16,
     grid: u16,
+    lights: [u16; 2],
     counts: [u16; COUNTS],
 }
 
 const _: () = assert!(size_of::<Header>().is_multiple_of(8) && size_of::<Room>().is_multiple_of(8));
 
 impl Header {
-    /// The header of a scene with so many materials, this grid, and so many primitives of each kind.
-    pub fn new(needs: Capabilities, materials: u16, grid: Grid, primitives: [u16; KINDS]) -> Self {
+    /// The header of a scene with so many materials, this grid, and so many primitives and emitters of each kind.
+    pub fn new(
+        needs: Capabilities,
+        materials: u16,
+        grid: Grid,
+        primitives: [u16; KINDS],
+        lights: [u16; 2],
+    ) -> Self {
         let mut counts = [0; COUNTS];
         counts[..KINDS].copy_from_slice(&primitives);
         Self {
@@ -62,6 +76,7 @@ impl Header {
             needs,
             materials,
             grid: grid.shift() as u16,
+            lights,
             counts,
         }
     }
@@ -78,7 +93,9 @@ impl<'s> Scene<'s> {
         if header.magic != MAGIC {
             return Err(BlobError::BadMagic);
         }
-        if primitives > MAX_PRIMITIVES || header.grid >= 32 || unused.iter().any(|&count| count != 0) {
+        let [caps, balls] = header.lights.map(usize::from);
+        let too_many = primitives > MAX_PRIMITIVES || caps + balls > primitives;
+        if too_many || header.grid >= 32 || unused.iter().any(|&count| count != 0) {
             return Err(BlobError::BadHeader);
         }
         if !image.covers(header.needs) {
@@ -93,6 +110,7 @@ impl<'s> Scene<'s> {
                 opened: &PrimitiveSet::EMPTY,
             },
             materials: take_records(&mut bytes, header.materials)?,
+            lights: Lights::take(&mut bytes, header.lights)?,
         };
         if !bytes.is_empty() {
             return Err(BlobError::Length);
@@ -108,6 +126,9 @@ impl<'s> Scene<'s> {
                 Some(capability) if needs.has(capability) || material.absorbs_all() => {}
                 _ => return Err(BlobError::BadMaterial),
             }
+        }
+        if !self.lights.is_sound(self.materials.len(), needs) {
+            return Err(BlobError::BadLight);
         }
         let hollow_spheres = self.aggregate.primitives.hollow_spheres.len();
         if self

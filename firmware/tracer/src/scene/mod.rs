@@ -5,10 +5,11 @@ mod format;
 pub use crate::blob::BlobError;
 pub use crate::capability::{All, Capabilities, Capability, Needs};
 pub use crate::geometry::MAX_PRIMITIVES;
-pub use format::{Header, MAX_BYTES};
+pub use format::{Header, MAX_BYTES, MAX_LIGHT_BYTES};
 
 use crate::aggregate::Linear;
 use crate::camera::CameraRecord;
+use crate::light::Lights;
 use crate::material::MaterialRecord;
 
 /// What there is. [`Scene::view`] makes it, [`Scene::seen_from`] says from where it is looked at.
@@ -18,6 +19,8 @@ pub struct Scene<'s> {
     pub aggregate: Linear<'s>,
     /// What they are made of.
     pub materials: &'s [MaterialRecord],
+    /// The emitters that are looked for.
+    pub lights: Lights<'s>,
 }
 
 impl<'s> Scene<'s> {

@@ -108,7 +108,13 @@ pub(crate) fn blob_for(needs: Capabilities, hollow: &[Sphere], solid: &[Sphere])
         .iter()
         .map(|&record| solid_sphere(grid, record))
         .collect();
-    let header = Header::new(needs, count, grid, [hollow.len() as u16, solid.len() as u16, 0]);
+    let header = Header::new(
+        needs,
+        count,
+        grid,
+        [hollow.len() as u16, solid.len() as u16, 0],
+        [0; 2],
+    );
     let bytes = [
         bytemuck::bytes_of(&header),
         bytemuck::cast_slice(hollow_spheres),

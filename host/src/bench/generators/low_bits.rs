@@ -18,7 +18,7 @@ use crate::oracle::compare::{CompareError, Comparison, compare};
 use crate::oracle::difference::differences;
 use crate::oracle::lockstep;
 use crate::platform::file::WriteError;
-use crate::scene::{Scene, compile};
+use crate::scene::{Integrator, Scene, compile};
 
 /// `precise` in everything but its random numbers, which are those of `paper`.
 #[derive(Clone, Copy, Debug)]
@@ -94,7 +94,7 @@ impl Pictures {
             termination: Termination::Roulette,
             epsilon: Precise::EPSILON,
         };
-        let compiled = compile(scene, width, height);
+        let compiled = compile(scene, width, height, Integrator::Path);
         Self {
             full_state: lockstep::render::<Precise>(&compiled, &plan, |_| ()).picture,
             low_bits: lockstep::render::<PreciseByLowBits>(&compiled, &plan, |_| ()).picture,

@@ -1,5 +1,5 @@
 use tracer::geometry::PrimitiveId;
-use tracer::integrator::{Integrator, Path};
+use tracer::integrator::{Integrator as _, Path};
 use tracer::material::RadianceNumbers;
 use tracer::profile::{Paper, Precise, Profile};
 use tracer::scene::All;
@@ -26,7 +26,7 @@ fn plan<P: Profile>(spp: u32) -> Plan {
 fn compiled(file: &str) -> CompiledScene {
     let file = workspace::file(file).unwrap();
     let scene = scene::Scene::load(&file).unwrap();
-    scene::compile(&scene, 32, 24)
+    scene::compile(&scene, 32, 24, scene::Integrator::Path)
 }
 
 /// Every sample of a picture, as the tracer itself walks it and as it is walked here: sums for the film, and rays.

@@ -8,7 +8,7 @@ use super::tests::{SMALL, cornell, mean_and_error};
 use super::*;
 use crate::oracle::compare::compare;
 use crate::oracle::lockstep;
-use crate::scene::{Material, compile};
+use crate::scene::{Integrator, Material, compile};
 
 /// Lamps of every kind: small and large, one sunk in the floor, one half in glass, one that dips through the ceiling, one that is a
 /// mirror, one within another, a wall that shines.
@@ -179,7 +179,7 @@ fn the_tracer_in_double_precision_agrees() {
             termination: tracer::unit::Termination::Roulette,
             epsilon: Precise::EPSILON,
         };
-        let compiled = compile(&scene, plan.width, plan.height);
+        let compiled = compile(&scene, plan.width, plan.height, Integrator::Path);
         let lockstep = lockstep::render::<Precise>(&compiled, &plan, |_| ());
         no_tile_differs(
             &scene.name,

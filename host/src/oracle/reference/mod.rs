@@ -26,7 +26,7 @@ use sampling::Batch;
 use vector::Vector;
 
 use crate::image::picture::{Estimate, Picture};
-use crate::scene::Scene;
+use crate::scene::{Integrator, Scene};
 
 /// When a path ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -70,18 +70,24 @@ pub struct Rendered {
 }
 
 impl Rendered {
-    /// `picture` by plain paths with a better estimate of its noise, if it has one: its own samples' and the reference's together.
+    /// `picture` by this integrator with a better estimate of its noise, if it has one: its own samples' and the reference's together.
+    /// What plain paths have is known; of those that look for light, the reference's are taken for an example.
     ///
     /// A picture whose few samples have met with nothing rare and bright takes itself for exact, and its darkness for an error.
     #[must_use]
-    pub fn pooled_noise(&self, picture: Estimate) -> Estimate {
+    pub fn pooled_noise(&self, picture: Estimate, integrator: Integrator) -> Estimate {
         let (Some(own), Some(samples), Some(others)) = (&picture.variance, picture.spp, self.estimate.spp)
         else {
             return picture;
         };
         let (samples, others) = (f64::from(samples), f64::from(others));
-        let pooled = own.iter().zip(&self.plain_variance).map(|(own, plain)| {
-            [0, 1, 2].map(|c| (samples * own[c] + others * plain[c] / samples) / (samples + others))
+        let looking = self.estimate.variance.iter().flatten();
+        let of_a_sample: Vec<[f64; 3]> = match integrator {
+            Integrator::Path => self.plain_variance.clone(),
+            Integrator::NextEvent => looking.map(|variance| variance.map(|v| v * others)).collect(),
+        };
+        let pooled = own.iter().zip(&of_a_sample).map(|(own, known)| {
+            [0, 1, 2].map(|c| (samples * own[c] + others * known[c] / samples) / (samples + others))
         });
         Estimate {
             variance: Some(pooled.collect()),

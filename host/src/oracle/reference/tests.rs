@@ -251,11 +251,11 @@ fn noise_is_that_of_all_samples() {
         estimate: estimate(0.1, 192),
         plain_variance: vec![[4.0; 3]],
     };
-    let pooled = known.pooled_noise(estimate(0.0, 64));
+    let pooled = known.pooled_noise(estimate(0.0, 64), Integrator::Path);
     assert_eq!(pooled.variance, Some(vec![[3.0 / 64.0; 3]]));
     let unknown = Estimate {
         variance: None,
         ..estimate(0.0, 64)
     };
-    assert_eq!(known.pooled_noise(unknown.clone()), unknown);
+    assert_eq!(known.pooled_noise(unknown.clone(), Integrator::Path), unknown);
 }

@@ -1,6 +1,6 @@
 use super::*;
 use crate::platform::workspace;
-use crate::scene::{Scene, compile};
+use crate::scene::{Integrator, Scene, compile};
 
 /// Rays of each scene; `cargo xtask verify --shortcuts` takes many more.
 const RAYS: u64 = 1 << 17;
@@ -9,7 +9,7 @@ const RAYS: u64 = 1 << 17;
 fn scenes_that_nobody_made_are_met_alike_by_the_short_way() {
     let (mut rooms, mut coarse) = (0, 0);
     for scene in random_scenes(1).take(60) {
-        let compiled = compile(&scene, 64, 48);
+        let compiled = compile(&scene, 64, 48, Integrator::Path);
         rooms += u32::from(compiled.is_room());
         coarse += u32::from(compiled.has_coarse_solids());
         if let Err(disagreement) = compare(&compiled, RAYS / 4, 7) {
@@ -25,7 +25,7 @@ fn scenes_that_nobody_made_are_met_alike_by_the_short_way() {
 #[test]
 fn the_standard_scene_is_met_alike_by_the_short_way() {
     let scene = Scene::load(&workspace::scene(None).unwrap()).unwrap();
-    let compiled = compile(&scene, 64, 48);
+    let compiled = compile(&scene, 64, 48, Integrator::Path);
     assert!(compiled.is_room() && compiled.has_coarse_solids());
     assert!(compare(&compiled, RAYS, 1).unwrap() >= RAYS);
 }
@@ -34,7 +34,7 @@ fn the_standard_scene_is_met_alike_by_the_short_way() {
 #[test]
 fn a_proof_that_does_not_hold_is_found_out() {
     let scene = Scene::load(&workspace::scene(None).unwrap()).unwrap();
-    let mut compiled = compile(&scene, 64, 48);
+    let mut compiled = compile(&scene, 64, 48, Integrator::Path);
     let room = size_of::<tracer::scene::Header>();
     let mut bytes = compiled.blob.bytes().to_vec();
     let claimed: &mut tracer::aggregate::Room =

@@ -83,6 +83,11 @@ impl Shape for HollowSphere {
         }
     }
 
+    #[inline]
+    fn encloses(&self) -> bool {
+        true
+    }
+
     fn bounds(&self) -> Bounds {
         self.0.bounds()
     }

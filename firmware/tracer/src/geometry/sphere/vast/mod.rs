@@ -107,6 +107,11 @@ impl Shape for VastSphere {
         }
     }
 
+    #[inline]
+    fn encloses(&self) -> bool {
+        self.is_hollow()
+    }
+
     /// All that 16:16 holds: nothing that such a sphere reaches through is smaller.
     fn bounds(&self) -> Bounds {
         Bounds {

@@ -1,0 +1,203 @@
+//! Emitters, and where a diffuse surface looks for their light.
+//!
+//! A diffuse surface finds light in two ways: by a connection to a point that is drawn here, and by the direction in which its path
+//! goes on. Both may find the same light, which counts with the share that the balance heuristic gives (E. Veach, "Robust Monte
+//! Carlo Methods for Light Transport Simulation", 1997, section 9.2). For Lambert's BSDF the share of either way times what it
+//! divides by is the same number: `own / (own + looked)`, of the densities by which the path's own way and the connection have that
+//! direction. So one number, the *balance*, weighs both; it is never above 1, and no distance makes it overflow.
+//!
+//! The scene compiler finds the emitters and what of each can be seen. What is in no record here is found by paths alone, and counts
+//! in full.
+
+mod ball;
+mod cap;
+mod magnitude;
+mod numbers;
+
+pub use ball::BallLight;
+pub use cap::CapLight;
+pub use magnitude::Magnitude;
+pub use numbers::{LEAST_SHARE, LightNumbers, MOST_DOUBLINGS};
+
+use fixedmath::U0F32;
+
+use crate::aggregate::Sight;
+use crate::arithmetic::Formats;
+use crate::blob::{BlobError, take_records};
+use crate::capability::{Capabilities, Capability, Needs};
+use crate::geometry::{Interaction, MaterialId, PrimitiveId, Ray};
+use crate::material::RadianceNumbers;
+use crate::profile::Profile;
+use crate::random::Random;
+
+/// The emitters of a scene that are looked for.
+#[derive(Clone, Copy, Debug)]
+pub struct Lights<'s> {
+    /// Caps of spheres.
+    pub caps: &'s [CapLight],
+    /// Balls.
+    pub balls: &'s [BallLight],
+}
+
+/// What all kinds of emitters have in common: a record, and how it is looked for.
+trait Light {
+    /// The chance that it or one before it is chosen; of the last all ones.
+    fn threshold(&self) -> U0F32;
+    /// Whose surface it is.
+    fn primitive(&self) -> PrimitiveId;
+    /// What it is made of.
+    fn material(&self) -> MaterialId;
+    /// Hollow shapes may hide parts of it.
+    fn is_clipped(&self) -> bool;
+
+    /// A direction in which it is, drawn from so that what can be seen of it is found evenly.
+    fn aim<N: LightNumbers>(&self, place: &Place<N>, random: &mut impl Random) -> Option<Aim<N>>;
+
+    /// The balance of light that a ray from `place` has met at `point`, at this cosine; none where no connection leads there.
+    fn balance<N: LightNumbers>(
+        &self,
+        ray: &Ray<N>,
+        cosine: N::Unit,
+        point: [N::Length; 3],
+    ) -> Option<N::Balance>;
+}
+
+/// Where light is looked for from.
+struct Place<N: Formats> {
+    point: [N::Length; 3],
+    /// On the side from which light comes.
+    normal: [N::Unit; 3],
+}
+
+/// A direction in which an emitter is.
+struct Aim<N: LightNumbers> {
+    direction: [N::Unit; 3],
+    distance: N::Length,
+    balance: N::Balance,
+}
+
+/// A way to an emitter that nothing need stand in.
+#[derive(Clone, Copy, Debug)]
+pub struct Connection<N: RadianceNumbers> {
+    /// The way.
+    pub sight: Sight<N>,
+    /// What the emitter is made of.
+    pub material: MaterialId,
+    /// How much of its light counts.
+    pub share: N::Weight,
+}
+
+impl<'s> Lights<'s> {
+    /// Takes the records of so many of each kind from the front of a scene's bytes.
+    pub(crate) fn take(bytes: &mut &'s [u8], [caps, balls]: [u16; 2]) -> Result<Self, BlobError> {
+        Ok(Self {
+            caps: take_records(bytes, caps)?,
+            balls: take_records(bytes, balls)?,
+        })
+    }
+
+    /// Whether all records are sound, in a scene with so many materials, and of no other kind than it needs.
+    pub(crate) fn is_sound(&self, materials: usize, needs: Capabilities) -> bool {
+        fn all<L: Light>(lights: &[L], materials: usize, is_sound: fn(&L) -> bool) -> bool {
+            lights
+                .iter()
+                .all(|light| light.material().index() < materials && is_sound(light))
+        }
+        let none = self.caps.is_empty() && self.balls.is_empty();
+        (none || needs.has(Capability::Lights))
+            && (self.balls.is_empty() || needs.has(Capability::BallLights))
+            && all(self.caps, materials, CapLight::is_sound)
+            && all(self.balls, materials, BallLight::is_sound)
+    }
+
+    /// A connection from a diffuse surface to an emitter, in proportion to what each may give.
+    ///
+    /// None where there is no emitter, where what is drawn is behind the surface or turned away, and where so little would count that
+    /// chance decides whether it is worth the ray.
+    #[inline]
+    pub fn connect<P: Profile, F: Needs>(
+        &self,
+        interaction: &Interaction<P::Numbers>,
+        random: &mut P::Random,
+    ) -> Option<Connection<P::Numbers>> {
+        let balls = if F::NEEDS.has(Capability::BallLights) {
+            self.balls
+        } else {
+            &[]
+        };
+        if let ([light], []) = (self.caps, balls) {
+            return connect::<P>(light, interaction, random);
+        }
+        let chance = random.fraction();
+        if let Some(light) = chosen(self.caps, chance) {
+            return connect::<P>(light, interaction, random);
+        }
+        connect::<P>(chosen(balls, chance)?, interaction, random)
+    }
+
+    /// What counts of the light that `ray`, which a diffuse surface has sent on, has met.
+    #[cold]
+    #[inline(never)]
+    pub fn share<N: LightNumbers, F: Needs>(&self, ray: &Ray<N>, interaction: &Interaction<N>) -> N::Weight {
+        // It has left its surface on whichever side that is.
+        let cosine = N::cosine(ray.normal, ray.direction);
+        let cosine = if cosine < N::ZERO { -cosine } else { cosine };
+        let balance = if let Some(light) = light_of(self.caps, interaction.primitive) {
+            light.balance(ray, cosine, interaction.point)
+        } else if F::NEEDS.has(Capability::BallLights)
+            && let Some(light) = light_of(self.balls, interaction.primitive)
+        {
+            light.balance(ray, cosine, interaction.point)
+        } else {
+            None
+        };
+        balance.map_or(N::FULL, N::share)
+    }
+}
+
+fn chosen<L: Light>(lights: &[L], chance: U0F32) -> Option<&L> {
+    lights.get(lights.partition_point(|light| light.threshold() < chance))
+}
+
+fn light_of<L: Light>(lights: &[L], primitive: PrimitiveId) -> Option<&L> {
+    lights.iter().find(|light| light.primitive() == primitive)
+}
+
+#[inline]
+fn connect<P: Profile>(
+    light: &impl Light,
+    interaction: &Interaction<P::Numbers>,
+    random: &mut P::Random,
+) -> Option<Connection<P::Numbers>> {
+    let place = Place {
+        point: interaction.point,
+        normal: interaction.facing(),
+    };
+    let aim = light.aim::<P::Numbers>(&place, random)?;
+    let share = P::Numbers::thinned(aim.balance, || random.fraction())?;
+    Some(Connection {
+        sight: Sight {
+            ray: Ray {
+                origin: interaction.point,
+                direction: aim.direction,
+                departed: interaction.primitive,
+                normal: interaction.normal,
+            },
+            t_max: aim.distance,
+            target: light.primitive(),
+            is_within: !light.is_clipped(),
+        },
+        material: light.material(),
+        share,
+    })
+}
+
+/// A sample that a fraction in five has not, drawn until there is one.
+#[inline]
+fn drawn<T>(random: &mut impl Random, sample: impl Fn(U0F32) -> Option<T>) -> T {
+    loop {
+        if let Some(found) = sample(random.fraction()) {
+            return found;
+        }
+    }
+}
