@@ -48,6 +48,8 @@ capabilities! {
     Vast = "vast",
     /// Emitters that diffuse surfaces look for: see [`Lights`](crate::light::Lights).
     Lights = "lights",
+    /// More than one of them.
+    ManyLights = "many-lights",
     /// Such emitters that are balls: see [`BallLight`](crate::light::BallLight).
     BallLights = "ball-lights",
     /// Russian roulette; otherwise paths end at a fixed depth.

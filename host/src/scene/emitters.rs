@@ -83,11 +83,15 @@ impl Emitters {
 
     /// What an image must be capable of to look for them.
     pub(super) fn needs(&self) -> Capabilities {
-        match self.counts() {
-            [0, 0] => Capabilities::NONE,
-            [_, 0] => Capabilities::of(&[Capability::Lights]),
-            _ => Capabilities::of(&[Capability::Lights, Capability::BallLights]),
-        }
+        let wanted = [
+            (self.caps.len() + self.balls.len() > 0, Capability::Lights),
+            (self.caps.len() + self.balls.len() > 1, Capability::ManyLights),
+            (!self.balls.is_empty(), Capability::BallLights),
+        ];
+        let wanted = wanted.into_iter().filter(|(is_wanted, _)| *is_wanted);
+        wanted.fold(Capabilities::NONE, |needs, (_, capability)| {
+            needs.with(capability)
+        })
     }
 }
 

@@ -66,11 +66,14 @@ impl<P: Profile, F: Needs> Integrator<P> for Path<P, F> {
                 break;
             };
             if material.emits() {
-                let arriving = if has_looked {
-                    let share = scene.lights.share::<P::Numbers, F>(&ray, &interaction);
-                    throughput.map(|throughput| P::Numbers::attenuate(throughput, share))
+                let share = if has_looked {
+                    scene.lights.share::<P::Numbers, F>(&ray, &interaction)
                 } else {
-                    throughput
+                    None
+                };
+                let arriving = match share {
+                    Some(share) => throughput.map(|throughput| P::Numbers::attenuate(throughput, share)),
+                    None => throughput,
                 };
                 add_emission::<P::Numbers>(&mut radiance, arriving, material);
             }

@@ -105,6 +105,7 @@ impl<'s> Lights<'s> {
         }
         let none = self.caps.is_empty() && self.balls.is_empty();
         (none || needs.has(Capability::Lights))
+            && (self.caps.len() + self.balls.len() < 2 || needs.has(Capability::ManyLights))
             && (self.balls.is_empty() || needs.has(Capability::BallLights))
             && all(self.caps, materials, CapLight::is_sound)
             && all(self.balls, materials, BallLight::is_sound)
@@ -125,20 +126,27 @@ impl<'s> Lights<'s> {
         } else {
             &[]
         };
-        if let ([light], []) = (self.caps, balls) {
-            return connect::<P>(light, interaction, random);
+        if !F::NEEDS.has(Capability::ManyLights) || self.caps.len() + balls.len() < 2 {
+            return match self.caps {
+                [light, ..] => connect::<P>(light, interaction, random),
+                [] => connect::<P>(balls.first()?, interaction, random),
+            };
         }
         let chance = random.fraction();
-        if let Some(light) = chosen(self.caps, chance) {
-            return connect::<P>(light, interaction, random);
+        match chosen(self.caps, chance) {
+            Some(light) => connect::<P>(light, interaction, random),
+            None => connect::<P>(chosen(balls, chance)?, interaction, random),
         }
-        connect::<P>(chosen(balls, chance)?, interaction, random)
     }
 
-    /// What counts of the light that `ray`, which a diffuse surface has sent on, has met.
+    /// What counts of the light that `ray`, which a diffuse surface has sent on, has met; none where that is all of it.
     #[cold]
     #[inline(never)]
-    pub fn share<N: LightNumbers, F: Needs>(&self, ray: &Ray<N>, interaction: &Interaction<N>) -> N::Weight {
+    pub fn share<N: LightNumbers, F: Needs>(
+        &self,
+        ray: &Ray<N>,
+        interaction: &Interaction<N>,
+    ) -> Option<N::Weight> {
         // It has left its surface on whichever side that is.
         let cosine = N::cosine(ray.normal, ray.direction);
         let cosine = if cosine < N::ZERO { -cosine } else { cosine };
@@ -151,7 +159,7 @@ impl<'s> Lights<'s> {
         } else {
             None
         };
-        balance.map_or(N::FULL, N::share)
+        balance.map(N::share)
     }
 }
 
