@@ -58,14 +58,20 @@ fn capability(word: &str) -> Result<Capability, String> {
 }
 
 fn image(profile: &str, needs: Capabilities) -> String {
+    let profile = format!("tracer::profile::{profile}");
+    let profile = if needs.has(Capability::Kronecker) {
+        format!("tracer::kronecker::Stratified<{profile}>")
+    } else {
+        profile
+    };
     let needs: Vec<String> = needs
         .iter()
         .map(|capability| format!("Capability::{capability:?}"))
         .collect();
     format!(
         "use tracer::scene::{{Capabilities, Capability, Needs}};\n\n\
-         /// The arithmetic this image was built with.\n\
-         pub type ImageProfile = tracer::profile::{profile};\n\n\
+         /// The arithmetic and the samples this image was built with.\n\
+         pub type ImageProfile = {profile};\n\n\
          /// The integrator, capable of what this image's scene needs.\n\
          pub type ImageIntegrator = tracer::integrator::Path<ImageProfile, ImageNeeds>;\n\n\
          /// What this image's scene needs of the tracer.\n\

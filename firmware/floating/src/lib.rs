@@ -22,6 +22,7 @@ pub struct Lockstep<P, F>(PhantomData<(P, F)>);
 
 impl<P: Profile, F: Float> Profile for Lockstep<P, F> {
     const NAME: &'static str = P::NAME;
+    const STRATIFIED_NAME: &'static str = P::STRATIFIED_NAME;
     const EPSILON: I16F16 = P::EPSILON;
     const QUADRATIC: Quadratic = P::QUADRATIC;
     type Numbers = Floating<F>;

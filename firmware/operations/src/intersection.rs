@@ -23,6 +23,7 @@ pub enum Textbook {}
 
 impl Profile for Textbook {
     const NAME: &'static str = "textbook";
+    const STRATIFIED_NAME: &'static str = "textbook";
     const EPSILON: I16F16 = Precise::EPSILON;
     const QUADRATIC: Quadratic = Quadratic::Textbook;
     type Numbers = Mixed;

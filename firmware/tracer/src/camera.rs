@@ -90,7 +90,7 @@ impl<N: FilmNumbers> Camera<N> {
 
     /// A ray through the sub-pixel in `column` from the left and `row` from below, spread by the tent filter.
     pub fn ray<R: Random>(&self, column: u32, row: u32, random: &mut R) -> Ray<N> {
-        let (x, y) = (N::tent(random.fraction()), N::tent(random.fraction()));
+        let [x, y] = random.film().map(N::tent);
         let x = N::across(column, x, self.subpixels[0], self.reciprocals[0]);
         let y = N::across(row, y, self.subpixels[1], self.reciprocals[1]);
         let direction = N::normalised(N::combine(self.forward, x, self.right, y, self.up), self.forward);

@@ -50,8 +50,12 @@ capabilities! {
     Lights = "lights",
     /// More than one of them.
     ManyLights = "many-lights",
+    /// Such emitters that hollow shapes hide a part of.
+    ClippedLights = "clipped-lights",
     /// Such emitters that are balls: see [`BallLight`](crate::light::BallLight).
     BallLights = "ball-lights",
+    /// Samples by an additive recurrence: see [`Kronecker`](crate::kronecker::Kronecker).
+    Kronecker = "kronecker",
     /// Russian roulette; otherwise paths end at a fixed depth.
     Roulette = "roulette",
 }

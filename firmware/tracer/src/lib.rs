@@ -32,6 +32,7 @@ pub mod camera;
 pub mod capability;
 pub mod geometry;
 pub mod integrator;
+pub mod kronecker;
 pub mod light;
 pub mod material;
 pub mod plan;

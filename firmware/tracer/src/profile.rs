@@ -26,6 +26,8 @@ impl<
 pub trait Profile: Sized + 'static {
     /// The name used by `--profile` and in reports.
     const NAME: &'static str;
+    /// The name by which host and core agree on it with samples by an additive recurrence ([`Stratified`](crate::kronecker::Stratified)).
+    const STRATIFIED_NAME: &'static str;
     /// Self-intersection epsilon, unless the job says otherwise.
     const EPSILON: I16F16;
     /// How a quadratic surface is intersected.
@@ -59,6 +61,7 @@ pub enum Precise {}
 
 impl Profile for Paper {
     const NAME: &'static str = "paper";
+    const STRATIFIED_NAME: &'static str = "paper+k";
     const EPSILON: I16F16 = I16F16::from_bits(6554);
     const QUADRATIC: Quadratic = Quadratic::Textbook;
     type Numbers = Published;
@@ -68,6 +71,7 @@ impl Profile for Paper {
 
 impl Profile for Precise {
     const NAME: &'static str = "precise";
+    const STRATIFIED_NAME: &'static str = "precise+k";
     const EPSILON: I16F16 = I16F16::ZERO;
     const QUADRATIC: Quadratic = Quadratic::Power;
     type Numbers = Mixed;

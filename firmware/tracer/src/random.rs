@@ -10,6 +10,26 @@ pub trait Random {
 
     /// The next number.
     fn fraction(&mut self) -> U0F32;
+
+    /// To be called before a pixel's first sample.
+    #[inline]
+    fn start_pixel(&mut self) {}
+
+    /// To be called before each sample.
+    #[inline]
+    fn start_sample(&mut self) {}
+
+    /// Where a sample is in its sub-pixel: a point of the unit square, to be taken first.
+    #[inline]
+    fn film(&mut self) -> [U0F32; 2] {
+        [self.fraction(), self.fraction()]
+    }
+
+    /// A point of the unit square, 16 bits for each coordinate, the first in the upper half.
+    #[inline]
+    fn pair(&mut self) -> U0F32 {
+        self.fraction()
+    }
 }
 
 /// 2^64 over the golden ratio, rounded to the even number above, whose continued fraction stays that of the golden ratio

@@ -31,9 +31,11 @@ pub fn walk<P: Profile>(
     let width = u32::from(plan.width);
     let (mut column, mut row) = plan.place(extent.first_pixel);
     for pixel in 0..usize::from(extent.pixels) {
+        random.start_pixel();
         let (left, below) = (2 * column, 2 * (u32::from(plan.height) - 1 - row));
         for subpixel in 0..4 {
             for _ in 0..extent.samples / 4 {
+                random.start_sample();
                 let ray = camera.ray(left + (subpixel & 1), below + (subpixel >> 1), &mut random);
                 take(pixel, integrator.sample(scene, ray, &mut random));
             }

@@ -254,6 +254,7 @@ enum TextbookPrecise {}
 
 impl Profile for TextbookPrecise {
     const NAME: &'static str = "textbook";
+    const STRATIFIED_NAME: &'static str = "textbook";
     const EPSILON: I16F16 = Precise::EPSILON;
     const QUADRATIC: Quadratic = Quadratic::Textbook;
     type Numbers = Mixed;

@@ -228,7 +228,7 @@ impl<'a> Boot<'a> {
 
     /// Reads a block from the start of `memory`. Total: see the crate's contract of decoding.
     pub fn decode(memory: &'a [u8]) -> Result<Self, DecodeError> {
-        let (fields, rest) = Header::split(memory)?;
+        let (fields, rest) = Header::split_aligned(memory)?;
         if fields.magic != MAGIC {
             return Err(DecodeError::Magic);
         }

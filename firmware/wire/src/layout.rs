@@ -11,9 +11,19 @@ pub(crate) trait Field: Sized {
     /// The field that begins at `at`.
     fn read<const N: usize>(message: &[u8; N], at: usize) -> Self;
 
+    /// The same of a message that begins at a multiple of 8, where a field is one load.
+    #[inline(always)]
+    fn read_aligned<const N: usize>(message: &Aligned<N>, at: usize) -> Self {
+        Self::read(&message.0, at)
+    }
+
     /// Puts the field there.
     fn write<const N: usize>(self, message: &mut [u8; N], at: usize);
 }
+
+/// A message that begins at a multiple of 8.
+#[repr(align(8))]
+pub(crate) struct Aligned<const N: usize>(pub(crate) [u8; N]);
 
 impl<const LEN: usize> Field for [u8; LEN] {
     const LEN: usize = LEN;
@@ -46,6 +56,12 @@ macro_rules! numbers {
             }
 
             #[inline(always)]
+            fn read_aligned<const N: usize>(message: &Aligned<N>, at: usize) -> Self {
+                let bytes = message.0[at..].first_chunk().expect("a layout ends within its message");
+                Self::from_le_bytes(*bytes)
+            }
+
+            #[inline(always)]
             fn write<const N: usize>(self, message: &mut [u8; N], at: usize) {
                 #[inline(never)]
                 fn put(number: $number, bytes: &mut [u8; size_of::<$number>()]) {
@@ -71,6 +87,9 @@ pub(crate) trait Layout: Sized {
 
     /// The fields of a message, and what follows them.
     fn split(message: &[u8]) -> Result<(Self, &[u8]), DecodeError>;
+
+    /// The same of a message that is copied to where its fields are one load each.
+    fn split_aligned(message: &[u8]) -> Result<(Self, &[u8]), DecodeError>;
 
     /// Puts them into a message.
     fn write<const N: usize>(self, message: &mut [u8; N]);
@@ -123,6 +142,16 @@ macro_rules! layout {
                     .split_first_chunk::<$end>()
                     .ok_or($crate::DecodeError::Truncated)?;
                 let fields = Self { $($field: $crate::layout::Field::read(front, $at),)+ };
+                Ok((fields, rest))
+            }
+
+            #[inline(always)]
+            fn split_aligned(message: &[u8]) -> Result<(Self, &[u8]), $crate::DecodeError> {
+                let (front, rest) = message
+                    .split_first_chunk::<$end>()
+                    .ok_or($crate::DecodeError::Truncated)?;
+                let front = $crate::layout::Aligned(*front);
+                let fields = Self { $($field: $crate::layout::Field::read_aligned(&front, $at),)+ };
                 Ok((fields, rest))
             }
 

@@ -156,6 +156,7 @@ impl Series {
                 cores: self.cores,
                 profile: kind.profile,
                 integrator: None,
+                sampler: None,
                 epsilon: None,
                 termination: End(kind.end),
                 pixels: Pixels::Leased,

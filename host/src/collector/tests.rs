@@ -17,6 +17,7 @@ use wire::{Boot, Name};
 use super::faulty_network::{Faults, FaultyNetwork};
 use super::silence::Silence;
 use super::*;
+use crate::firmware::arithmetic::{Arithmetic, Sampler};
 use crate::fleet::session::tests::small;
 use crate::fleet::session::{Route, Session};
 use crate::fleet::{self, Elsewhere, Fleet, NativeFleet, QemuFleet};
@@ -279,8 +280,7 @@ fn cores_that_failed_to_start_end_it_at_once_with_their_reason() {
     let session = small(2, PixelOrder::Leased);
     let socket = bind(Ipv4Addr::LOCALHOST, 0).expect("a free port");
     let damaged = vec![vec![0; 100]; 2];
-    let mut fleet =
-        NativeFleet::start(&damaged, crate::firmware::arithmetic::Arithmetic::Precise).expect("threads");
+    let mut fleet = NativeFleet::start(&damaged, Arithmetic::Precise, Sampler::Independent).expect("threads");
     let start = Instant::now();
     let end = collect(&session, &socket, &mut fleet, None, &RUNNING, &mut drop);
     assert!(start.elapsed() < Duration::from_secs(2));
@@ -368,7 +368,7 @@ fn packets_of_another_run_are_named_when_nothing_else_comes() {
     let foreign = Cores::start(&other, port, &[Faults::default()]);
     // Its own core exists but never says a word that counts, so that the silence is its own.
     let mut damaged =
-        NativeFleet::start(&[vec![]], crate::firmware::arithmetic::Arithmetic::Precise).expect("a thread");
+        NativeFleet::start(&[vec![]], Arithmetic::Precise, Sampler::Independent).expect("a thread");
     thread::sleep(Duration::from_millis(100));
     let end = collect(&session, &socket, &mut damaged, None, &RUNNING, &mut drop);
     foreign.join();

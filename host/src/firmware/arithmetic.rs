@@ -21,7 +21,7 @@ impl Arithmetic {
     /// All of them.
     pub const ALL: [Self; 2] = [Self::Paper, Self::Precise];
 
-    /// The name used by `--profile`, in reports and on the wire.
+    /// The name used by `--profile` and in reports.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Paper => Paper::NAME,
@@ -45,11 +45,56 @@ impl Arithmetic {
 }
 
 impl Arithmetic {
+    /// The sampler that a picture has unless another one is asked for.
+    pub const fn sampler(self) -> Sampler {
+        match self {
+            Self::Paper | Self::Precise => Sampler::Independent,
+        }
+    }
+
+    /// The name by which host and cores agree on it and a sampler.
+    pub const fn wire_name(self, sampler: Sampler) -> &'static str {
+        match (self, sampler) {
+            (Self::Paper, Sampler::Independent) => Paper::NAME,
+            (Self::Paper, Sampler::Kronecker) => Paper::STRATIFIED_NAME,
+            (Self::Precise, Sampler::Independent) => Precise::NAME,
+            (Self::Precise, Sampler::Kronecker) => Precise::STRATIFIED_NAME,
+        }
+    }
+
     /// The integrator that a picture has unless another one is asked for.
     pub const fn integrator(self) -> Integrator {
         match self {
             Self::Paper | Self::Precise => Integrator::Path,
         }
+    }
+}
+
+/// Where a picture's random numbers come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, clap::ValueEnum)]
+pub enum Sampler {
+    /// Each sample's are independent of all others', as published.
+    Independent,
+    /// The first of each sample keep out of the way of those of its pixel's other samples, by an additive recurrence.
+    Kronecker,
+}
+
+impl Sampler {
+    /// All there are.
+    pub const ALL: [Self; 2] = [Self::Independent, Self::Kronecker];
+
+    /// The name used by `--sampler` and in reports.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Independent => "independent",
+            Self::Kronecker => "kronecker",
+        }
+    }
+}
+
+impl fmt::Display for Sampler {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
     }
 }
 

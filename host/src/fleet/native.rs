@@ -11,12 +11,13 @@ use std::time::{Duration, Instant};
 use node::{Clock, Fault, Network, Outcome, SendError, StackUse, TICKS_PER_SECOND};
 use rustix::process::{Resource, Rlimit, getrlimit, setpriority_process, setrlimit};
 use tracer::integrator::Path;
+use tracer::kronecker::Stratified;
 use tracer::profile::{Paper, Precise, Profile};
 use tracer::scene::All;
 use wire::{Boot, Command, MAX_PAYLOAD, Name, ToCore};
 
 use super::{Fleet, FleetError, Patience, Policy, RUNNING};
-use crate::firmware::arithmetic::Arithmetic;
+use crate::firmware::arithmetic::{Arithmetic, Sampler};
 use crate::platform::wait;
 use crate::scene::Blob;
 
@@ -49,7 +50,7 @@ enum Core {
 
 impl NativeFleet {
     /// Starts one thread a boot block.
-    pub fn start(boot_blocks: &[Vec<u8>], profile: Arithmetic) -> Result<Self, FleetError> {
+    pub fn start(boot_blocks: &[Vec<u8>], profile: Arithmetic, sampler: Sampler) -> Result<Self, FleetError> {
         let failed = |core| {
             move |cause| FleetError::Start {
                 core,
@@ -69,7 +70,7 @@ impl NativeFleet {
             let (block, end) = (block.clone(), Arc::clone(&fleet.end));
             let spawned = thread::Builder::new()
                 .name(format!("core {core}"))
-                .spawn(move || run(&block, profile, end))
+                .spawn(move || run(&block, (profile, sampler), end))
                 .map_err(failed(core))?;
             fleet.cores.push(Core::Running(spawned));
         }
@@ -142,16 +143,18 @@ fn how(thread: JoinHandle<Result<Outcome, String>>) -> String {
     }
 }
 
-fn run(block: &[u8], profile: Arithmetic, end: Arc<End>) -> Result<Outcome, String> {
+fn run(block: &[u8], kind: (Arithmetic, Sampler), end: Arc<End>) -> Result<Outcome, String> {
     // Of this thread alone. Where the system does not let it, the collector waits for its turn like any core.
     let _as_before = setpriority_process(None, NICE);
     let block = Blob::new(block);
     let boot = Boot::decode(block.bytes()).map_err(|error| format!("its boot block: {error}"))?;
     let network = Loopback::open(&boot, end).map_err(|error| format!("its socket: {error}"))?;
     let clock = HostClock(Instant::now());
-    let outcome: Result<Outcome, Fault> = match profile {
-        Arithmetic::Paper => work::<Paper>(&boot, network, clock),
-        Arithmetic::Precise => work::<Precise>(&boot, network, clock),
+    let outcome: Result<Outcome, Fault> = match kind {
+        (Arithmetic::Paper, Sampler::Independent) => work::<Paper>(&boot, network, clock),
+        (Arithmetic::Paper, Sampler::Kronecker) => work::<Stratified<Paper>>(&boot, network, clock),
+        (Arithmetic::Precise, Sampler::Independent) => work::<Precise>(&boot, network, clock),
+        (Arithmetic::Precise, Sampler::Kronecker) => work::<Stratified<Precise>>(&boot, network, clock),
     };
     outcome.map_err(|fault| fault.to_string())
 }

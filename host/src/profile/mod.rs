@@ -22,7 +22,7 @@ use std::sync::atomic::AtomicBool;
 use cycles::{Assumptions, Estimate};
 use fixedmath::I16F16;
 
-use crate::firmware::arithmetic::Arithmetic;
+use crate::firmware::arithmetic::{Arithmetic, Sampler};
 use crate::firmware::board::Board;
 use crate::firmware::{ElfError, SoftFloat};
 use crate::platform::interrupt::LastAct;
@@ -62,6 +62,9 @@ pub struct ProfileOptions {
     /// How radiance is found: by paths that meet light, or that look for it as well [default: the profile's own]
     #[arg(long, value_enum)]
     pub integrator: Option<Integrator>,
+    /// Where random numbers come from [default: the profile's own]
+    #[arg(long, value_enum)]
+    pub sampler: Option<Sampler>,
     /// How far from a surface a new ray starts at least [default: the profile's own]
     #[arg(long, value_name = "X", allow_negative_numbers = true)]
     pub epsilon: Option<Epsilon>,
@@ -137,6 +140,7 @@ impl ProfileOptions {
             size: [self.size.width, self.size.height],
             spp: self.spp,
             integrator: self.integrator.unwrap_or(self.profile.integrator()).to_string(),
+            sampler: self.sampler.unwrap_or(self.profile.sampler()).to_string(),
             termination: self.termination.to_string(),
             epsilon_bits: epsilon.to_bits(),
             seed: self.seed,
@@ -152,6 +156,7 @@ impl ProfileOptions {
             cores: 1,
             profile: self.profile,
             integrator: self.integrator,
+            sampler: self.sampler,
             epsilon: self.epsilon,
             termination: self.termination,
             pixels: Pixels::Leased,

@@ -6,6 +6,7 @@ use std::{fs, io};
 use serde::{Deserialize, Serialize};
 
 use super::cost::Cost;
+use crate::firmware::arithmetic::Sampler;
 use crate::render::report::BlindSpot;
 use crate::scene::Integrator;
 
@@ -28,6 +29,9 @@ pub struct Subject {
     /// `path` or `next-event`; before there was a choice it was `path`.
     #[serde(default = "only_integrator")]
     pub integrator: String,
+    /// `independent` or `kronecker`, likewise.
+    #[serde(default = "only_sampler")]
+    pub sampler: String,
     /// `roulette` or `depth:N`.
     pub termination: String,
     /// How far from a surface a new ray starts at least, in 16:16.
@@ -40,6 +44,10 @@ pub struct Subject {
 
 fn only_integrator() -> String {
     Integrator::Path.to_string()
+}
+
+fn only_sampler() -> String {
+    Sampler::Independent.to_string()
 }
 
 /// A profile.
@@ -224,6 +232,7 @@ impl Subject {
                 ("size", format!("{}x{}", of.size[0], of.size[1])),
                 ("spp", of.spp.to_string()),
                 ("integrator", of.integrator.clone()),
+                ("sampler", of.sampler.clone()),
                 ("termination", of.termination.clone()),
                 ("epsilon", (f64::from(of.epsilon_bits) / 65536.0).to_string()),
                 ("seed", of.seed.to_string()),
@@ -264,6 +273,7 @@ pub(super) mod tests {
                 size: [1, 1],
                 spp: 4,
                 integrator: "path".to_owned(),
+                sampler: "independent".to_owned(),
                 termination: "roulette".to_owned(),
                 epsilon_bits: 16,
                 seed: 1,

@@ -20,11 +20,12 @@ use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
 use ::cycles::flow::Recording;
-use tracer::scene::Capability;
+use tracer::scene::{Capabilities, Capability};
 use tracer::unit::{Plan, Termination};
 use wire::Name;
 
 use crate::collector::{self, CollectError, Collection, End, Progress};
+use crate::firmware::arithmetic::Sampler;
 use crate::firmware::board::Board;
 use crate::firmware::{self, Image, Recipe};
 use crate::firmware::{Level, SoftFloat};
@@ -142,7 +143,7 @@ impl Job {
             epoch: 0,
             plan: self.plan,
             order: self.options.pixels.into(),
-            profile: Name::new(self.options.profile.name()),
+            profile: Name::new(self.options.profile.wire_name(self.options.sampler())),
         }
     }
 
@@ -150,13 +151,28 @@ impl Job {
     pub fn recipe(&self) -> Recipe {
         Recipe {
             profile: self.options.profile,
-            needs: match self.options.termination.0 {
-                Termination::Roulette => self.compiled.needs.with(Capability::Roulette),
-                Termination::Depth(_) => self.compiled.needs,
-            },
+            needs: self.needs(),
             log: None,
             soft_float: None,
         }
+    }
+
+    /// What scene, integrator, sampler and the end of paths need.
+    fn needs(&self) -> Capabilities {
+        let wanted = [
+            (
+                self.options.termination.0 == Termination::Roulette,
+                Capability::Roulette,
+            ),
+            (
+                self.options.sampler() == Sampler::Kronecker,
+                Capability::Kronecker,
+            ),
+        ];
+        let wanted = wanted.into_iter().filter(|(is_wanted, _)| *is_wanted);
+        wanted.fold(self.compiled.needs, |needs, (_, capability)| {
+            needs.with(capability)
+        })
     }
 
     /// Collects from cores that somebody else starts.
@@ -349,7 +365,7 @@ impl Job {
                 (Box::new(fleet) as Box<dyn Fleet>, origin)
             }
             None => {
-                let fleet = NativeFleet::start(&blocks, options.picture.profile)?;
+                let fleet = NativeFleet::start(&blocks, options.picture.profile, options.picture.sampler())?;
                 let origin = Origin {
                     backend: "native",
                     boards: Vec::new(),

@@ -11,7 +11,7 @@ use fixedmath::I16F16;
 use tracer::unit::{Plan, Termination};
 use wire::boot::PixelOrder;
 
-use crate::firmware::arithmetic::Arithmetic;
+use crate::firmware::arithmetic::{Arithmetic, Sampler};
 use crate::firmware::board::Board;
 use crate::firmware::{Level, SoftFloat};
 use crate::platform::workspace::{self, NoWorkspace};
@@ -40,6 +40,9 @@ pub struct PictureOptions {
     /// How radiance is found: by paths that meet light, or that look for it as well [default: the profile's own]
     #[arg(long, value_enum)]
     pub integrator: Option<Integrator>,
+    /// Where random numbers come from [default: the profile's own]
+    #[arg(long, value_enum)]
+    pub sampler: Option<Sampler>,
     /// How far along a ray its first hit is at least, in the scene's unit of length [default: the profile's own]
     #[arg(long, value_name = "X", allow_negative_numbers = true)]
     pub epsilon: Option<Epsilon>,
@@ -128,6 +131,11 @@ impl PictureOptions {
     /// The integrator.
     pub fn integrator(&self) -> Integrator {
         self.integrator.unwrap_or(self.profile.integrator())
+    }
+
+    /// The sampler.
+    pub fn sampler(&self) -> Sampler {
+        self.sampler.unwrap_or(self.profile.sampler())
     }
 
     /// The folder for the results of the scene of this name.
@@ -390,6 +398,8 @@ mod tests {
             "paper",
             "--integrator",
             "next-event",
+            "--sampler",
+            "kronecker",
             "--epsilon",
             "0.1",
             "--termination",
@@ -418,6 +428,7 @@ mod tests {
         );
         assert_eq!((plan.termination, plan.seed), (Termination::Depth(7), u64::MAX));
         assert_eq!(options.picture.integrator(), Integrator::NextEvent);
+        assert_eq!(options.picture.sampler(), Sampler::Kronecker);
         assert_eq!(options.picture.reference, Some(Reference::None));
     }
 
@@ -446,6 +457,7 @@ mod tests {
             (["--cores", "0"], "1..=1024"),
             (["--profile", "fancy"], "paper, precise"),
             (["--board", "versatilepb,z80"], "versatilepb, mps2-an385"),
+            (["--sampler", "halton"], "independent, kronecker"),
             (["--integrator", "photons"], "path, next-event"),
             (["--epsilon", "-0.1"], "from 0 on"),
             (["--epsilon", "inf"], "from 0 on"),

@@ -37,6 +37,9 @@ pub struct Report {
     /// `path` or `next-event`.
     #[serde(default)]
     pub integrator: String,
+    /// `independent` or `kronecker`.
+    #[serde(default)]
+    pub sampler: String,
     /// `roulette` or `depth:N`.
     pub termination: String,
     /// `leased`, `sequential` or `stochastic`.
@@ -305,6 +308,7 @@ mod tests {
             backend: "qemu".to_owned(),
             profile: "precise".to_owned(),
             integrator: "path".to_owned(),
+            sampler: "independent".to_owned(),
             termination: "roulette".to_owned(),
             pixels: "leased".to_owned(),
             seed: 1,

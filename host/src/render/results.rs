@@ -6,7 +6,6 @@ use std::time::Duration;
 
 use ::cycles::flow::Recording;
 use indicatif::{ProgressBar, ProgressStyle};
-use tracer::profile::{Paper, Precise};
 use tracer::unit::Termination;
 
 use super::folder::{self, Written};
@@ -14,7 +13,6 @@ use super::options::{Pixels, Reference};
 use super::{Job, Origin, RenderError, cycles};
 use crate::collector::{Collection, CoreRecord, End};
 use crate::firmware::SoftFloat;
-use crate::firmware::arithmetic::Arithmetic;
 use crate::firmware::board::INSTRUCTIONS_PER_TICK;
 use crate::image::openexr;
 use crate::image::picture::Estimate;
@@ -129,10 +127,7 @@ impl Results<'_> {
         let (compiled, plan) = (&self.job.compiled, &self.job.plan);
         let bar = bar("lockstep", self.collection.film.samples());
         let done = |samples| bar.inc(samples);
-        let rendered = match options.profile {
-            Arithmetic::Paper => lockstep::render::<Paper>(compiled, plan, done),
-            Arithmetic::Precise => lockstep::render::<Precise>(compiled, plan, done),
-        };
+        let rendered = lockstep::render_as(options.profile, options.sampler(), compiled, plan, done);
         bar.finish_and_clear();
         Some(rendered)
     }
@@ -210,6 +205,7 @@ impl Results<'_> {
             backend: self.origin.backend.to_owned(),
             profile: SoftFloat::profile(options.profile, self.origin.soft_float),
             integrator: options.integrator().to_string(),
+            sampler: options.sampler().to_string(),
             termination: options.termination.to_string(),
             pixels: options.pixels.name().to_owned(),
             seed: plan.seed,

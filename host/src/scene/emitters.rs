@@ -81,12 +81,18 @@ impl Emitters {
         [self.caps.len(), self.balls.len()].map(|count| count as u16)
     }
 
+    fn are_clipped(&self) -> bool {
+        self.caps.iter().any(|cap| cap.flags & CapLight::CLIPPED != 0)
+            || self.balls.iter().any(|ball| ball.is_clipped != 0)
+    }
+
     /// What an image must be capable of to look for them.
     pub(super) fn needs(&self) -> Capabilities {
         let wanted = [
             (self.caps.len() + self.balls.len() > 0, Capability::Lights),
             (self.caps.len() + self.balls.len() > 1, Capability::ManyLights),
             (!self.balls.is_empty(), Capability::BallLights),
+            (self.are_clipped(), Capability::ClippedLights),
         ];
         let wanted = wanted.into_iter().filter(|(is_wanted, _)| *is_wanted);
         wanted.fold(Capabilities::NONE, |needs, (_, capability)| {

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-use host::firmware::arithmetic::Arithmetic;
+use host::firmware::arithmetic::{Arithmetic, Sampler};
 use host::firmware::board::Board;
 use host::firmware::{self, Recipe};
 use host::fleet::NativeFleet;
@@ -309,7 +309,8 @@ fn a_picture_whose_folder_is_gone_when_it_is_done_is_kept() {
         if in_the_way {
             fs::write(&out, "").expect("a file");
         }
-        let _core = NativeFleet::start(&[block()], Arithmetic::Precise).expect("a thread");
+        let _core =
+            NativeFleet::start(&[block()], Arithmetic::Precise, Sampler::Independent).expect("a thread");
         let output = collector.wait_with_output().expect("its output");
         let said = said(&output);
         let kept = if in_the_way {

@@ -313,7 +313,10 @@ impl Aggregate for Linear<'_> {
     #[inline]
     fn occludes<P: Profile, F: Needs>(&self, sight: &Sight<P::Numbers>, epsilon: Length<P>) -> bool {
         self.any::<P, Within<F>>(sight, epsilon)
-            || F::NEEDS.has(Capability::Hollow) && !sight.is_within && self.any_wall::<P, F>(sight, epsilon)
+            || F::NEEDS.has(Capability::Hollow)
+                && F::NEEDS.has(Capability::ClippedLights)
+                && !sight.is_within
+                && self.any_wall::<P, F>(sight, epsilon)
     }
 
     fn bounds(&self) -> Option<Bounds> {

@@ -106,9 +106,15 @@ impl<'s> Lights<'s> {
         let none = self.caps.is_empty() && self.balls.is_empty();
         (none || needs.has(Capability::Lights))
             && (self.caps.len() + self.balls.len() < 2 || needs.has(Capability::ManyLights))
+            && (needs.has(Capability::ClippedLights) || !self.has_clipped())
             && (self.balls.is_empty() || needs.has(Capability::BallLights))
             && all(self.caps, materials, CapLight::is_sound)
             && all(self.balls, materials, BallLight::is_sound)
+    }
+
+    /// Whether hollow shapes may hide parts of any.
+    fn has_clipped(&self) -> bool {
+        self.caps.iter().any(Light::is_clipped) || self.balls.iter().any(Light::is_clipped)
     }
 
     /// A connection from a diffuse surface to an emitter, in proportion to what each may give.
@@ -203,9 +209,11 @@ fn connect<P: Profile>(
 /// A sample that a fraction in five has not, drawn until there is one.
 #[inline]
 fn drawn<T>(random: &mut impl Random, sample: impl Fn(U0F32) -> Option<T>) -> T {
+    let mut pair = random.pair();
     loop {
-        if let Some(found) = sample(random.fraction()) {
+        if let Some(found) = sample(pair) {
             return found;
         }
+        pair = random.fraction();
     }
 }

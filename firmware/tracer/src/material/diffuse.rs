@@ -77,10 +77,12 @@ pub enum RejectedDisc {}
 impl HemisphereSampling for RejectedDisc {
     #[inline]
     fn direction<N: Sampling, R: Random>(normal: [N::Unit; 3], random: &mut R) -> [N::Unit; 3] {
+        let mut pair = random.pair();
         loop {
-            if let Some(point) = N::on_hemisphere(random.fraction()) {
+            if let Some(point) = N::on_hemisphere(pair) {
                 return N::around(normal, point);
             }
+            pair = random.fraction();
         }
     }
 }

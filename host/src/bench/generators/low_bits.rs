@@ -26,6 +26,7 @@ pub enum PreciseByLowBits {}
 
 impl Profile for PreciseByLowBits {
     const NAME: &'static str = "precise by low bits";
+    const STRATIFIED_NAME: &'static str = "precise by low bits";
     const EPSILON: I16F16 = Precise::EPSILON;
     const QUADRATIC: Quadratic = Precise::QUADRATIC;
     type Numbers = <Precise as Profile>::Numbers;

@@ -100,6 +100,7 @@ pub(super) struct Observed<P>(PhantomData<P>);
 
 impl<P: Profile> Profile for Observed<P> {
     const NAME: &'static str = P::NAME;
+    const STRATIFIED_NAME: &'static str = P::STRATIFIED_NAME;
     const EPSILON: I16F16 = P::EPSILON;
     const QUADRATIC: Quadratic = P::QUADRATIC;
     type Numbers = P::Numbers;

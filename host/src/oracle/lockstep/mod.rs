@@ -13,13 +13,15 @@ use fixedmath::I16F16;
 use rayon::prelude::*;
 use tracer::camera::Camera;
 use tracer::integrator::{Integrator, Path};
+use tracer::kronecker::Stratified;
 use tracer::material::RadianceNumbers;
-use tracer::profile::Profile;
+use tracer::profile::{Paper, Precise, Profile};
 use tracer::random::Random;
 use tracer::scene::All;
 use tracer::unit::Plan;
 
 use self::samples::samples;
+use crate::firmware::arithmetic::{Arithmetic, Sampler};
 use crate::image::picture::{Estimate, Picture};
 use crate::scene::CompiledScene;
 
@@ -72,6 +74,22 @@ pub fn render<P: Profile<Random: Clone>>(
     render_beside::<P>(compiled, plan, plan.epsilon, progress)
 }
 
+/// The same by a profile and a sampler that are chosen at run time.
+pub fn render_as(
+    profile: Arithmetic,
+    sampler: Sampler,
+    compiled: &CompiledScene,
+    plan: &Plan,
+    progress: impl Fn(u64) + Sync,
+) -> Paired {
+    match (profile, sampler) {
+        (Arithmetic::Paper, Sampler::Independent) => render::<Paper>(compiled, plan, progress),
+        (Arithmetic::Paper, Sampler::Kronecker) => render::<Stratified<Paper>>(compiled, plan, progress),
+        (Arithmetic::Precise, Sampler::Independent) => render::<Precise>(compiled, plan, progress),
+        (Arithmetic::Precise, Sampler::Kronecker) => render::<Stratified<Precise>>(compiled, plan, progress),
+    }
+}
+
 /// The same beside doubles of another epsilon than `plan`'s.
 pub fn render_beside<P: Profile<Random: Clone>>(
     compiled: &CompiledScene,
@@ -91,7 +109,12 @@ pub fn render_beside<P: Profile<Random: Clone>>(
             for pass in 0..plan.passes() {
                 let id = pass * plan.spans() + span;
                 let mut random = P::Random::for_unit(plan.seed, id);
+                let mut last = None;
                 for (pixel, [column, row]) in samples(plan, id) {
+                    if last.replace(pixel) != Some(pixel) {
+                        random.start_pixel();
+                    }
+                    random.start_sample();
                     let mut doubles = random.clone();
                     let ray = cameras.0.ray(column, row, &mut random);
                     let sample = paths.0.sample(&scene, ray, &mut random);
