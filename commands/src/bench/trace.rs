@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicBool;
 
 use anyhow::Context;
 use host::bench::baseline::{self, Baseline};
-use host::bench::samples::{self, Series};
+use host::bench::samples::{self, Kinds, Series};
 use host::firmware::board::Board;
 use host::platform::console::say;
 use host::platform::workspace;
@@ -31,11 +31,17 @@ pub(crate) struct Arguments {
     /// Samples per pixel of the reference in double precision, a multiple of 4
     #[arg(long, value_name = "N", default_value = "512", value_parser = host::render::options::samples_per_pixel)]
     reference_spp: u32,
+    /// Samples per pixel by which noise is told
+    #[arg(long, value_name = "N", default_value = "4096", value_parser = host::render::options::samples_per_pixel)]
+    noise_spp: u32,
+    /// Only the profiles as published, and ours as it is by default
+    #[arg(long)]
+    few: bool,
     /// Number of cores
     #[arg(long, value_name = "N", default_value = "2", value_parser = clap::value_parser!(u16).range(1..=1024))]
     cores: u16,
     /// Put the cycles of a small Cornell box into tests/cycles.toml, above which a test lets none rise; measures nothing else
-    #[arg(long, conflicts_with_all = ["scene", "boards", "size", "spp", "reference_spp", "cores", "json"])]
+    #[arg(long, conflicts_with_all = ["scene", "boards", "size", "spp", "reference_spp", "noise_spp", "few", "cores", "json"])]
     bless: bool,
     /// Render with `precise`'s formulas in soft f32 and f64, too, in images that do not fit a core's memory: some minutes
     #[arg(long)]
@@ -54,6 +60,8 @@ pub(crate) fn run(arguments: &Arguments, interrupted: &AtomicBool) -> anyhow::Re
         size: arguments.size,
         spp: arguments.spp,
         reference_spp: arguments.reference_spp,
+        noise_spp: arguments.noise_spp,
+        kinds: if arguments.few { Kinds::Few } else { Kinds::All },
         cores: arguments.cores,
         soft_float: arguments.soft_float,
         no_install: arguments.set_up.no_install,

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use super::samples::{Row, Series};
+use super::samples::{Kinds, Row, Series};
 use crate::firmware::board::Board;
 use crate::platform::file::{WriteError, write_whole};
 use crate::platform::workspace::{self, NoWorkspace};
@@ -26,7 +26,7 @@ const MOST_RISE: f64 = 0.005;
 pub struct Baseline {
     /// The compiler's version. Another one schedules otherwise.
     pub compiler: String,
-    /// Cycles a sample by board, profile and way to end a path.
+    /// Cycles a sample by board, profile, integrator, sampler and way to end a path.
     pub cycles: BTreeMap<String, f64>,
 }
 
@@ -73,6 +73,8 @@ pub fn series() -> Result<Series, NoWorkspace> {
         },
         spp: 16,
         reference_spp: 64,
+        noise_spp: 64,
+        kinds: Kinds::Few,
         cores: 1,
         soft_float: false,
         no_install: true,

@@ -1,19 +1,25 @@
-//! What a whole sample costs on a core, and how wrong it is: the same small picture by every board, profile and way to end a path.
+//! What a whole sample costs on a core, how wrong it is and how noisy: the same small picture by every board, profile, integrator,
+//! sampler and way to end a path.
+//!
+//! *Efficiency* is what a picture of a given error costs less: the geometric mean over pixels of cycles times variance of the published
+//! system's profile, with roulette on the same board, over that of the row.
 
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
 use serde::Serialize;
-use tracer::unit::Termination;
+use tracer::unit::{Plan, Termination};
 
 use crate::firmware::SoftFloat;
-use crate::firmware::arithmetic::Arithmetic;
+use crate::firmware::arithmetic::{Arithmetic, Sampler};
 use crate::firmware::board::Board;
+use crate::oracle::noise::{self, Noise};
 use crate::platform::interrupt::LastAct;
 use crate::render::options::{Backend, End, PictureOptions, Pixels, RenderOptions, Size};
 use crate::render::report::Report;
 use crate::render::{self, RenderError};
+use crate::scene::{Integrator, Scene, compile, samples_per_unit};
 
 /// The picture that is rendered again and again.
 #[derive(Clone, Debug)]
@@ -28,6 +34,10 @@ pub struct Series {
     pub spp: u32,
     /// Samples per pixel of the reference.
     pub reference_spp: u32,
+    /// Samples per pixel by which noise is told; with fewer than four units of a pixel it is not.
+    pub noise_spp: u32,
+    /// What is rendered.
+    pub kinds: Kinds,
     /// Cores.
     pub cores: u16,
     /// Whether `precise` is rendered in soft float, too.
@@ -36,8 +46,20 @@ pub struct Series {
     pub no_install: bool,
 }
 
+/// What is rendered on every board.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kinds {
+    /// Each profile by each integrator with each sampler.
+    All,
+    /// Each profile as published, and ours as it is by default.
+    Few,
+}
+
 /// Ways to end a path: by chance, and after as many surfaces as chance always leaves.
 const TERMINATIONS: [Termination; 2] = [Termination::Roulette, Termination::Depth(5)];
+
+/// Of the random numbers by which noise is told.
+const NOISE_SEED: u64 = 2;
 
 /// A row of the list.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -48,6 +70,10 @@ pub struct Row {
     pub profile: String,
     /// The scene.
     pub scene: String,
+    /// `path` or `next-event`.
+    pub integrator: Integrator,
+    /// `independent` or `kronecker`.
+    pub sampler: Sampler,
     /// `roulette` or `depth:N`.
     pub termination: String,
     /// The version of the compiler that made the image.
@@ -76,6 +102,14 @@ pub struct Row {
     pub rmse: Option<f64>,
     /// The largest `rmse` that the noise leaves room for: two standard errors up.
     pub rmse_at_most: Option<f64>,
+    /// Variance of one sample, over all pixels.
+    pub variance_mean: Option<f64>,
+    /// Of the pixel in the middle.
+    pub variance_median: Option<f64>,
+    /// Of the pixel that is noisier than 95 of 100.
+    pub variance_p95: Option<f64>,
+    /// How many times fewer cycles a picture of the same noise takes than by `paper` with roulette on this board.
+    pub efficiency: Option<f64>,
     /// The picture, which is the same on every board.
     pub image_sha256: String,
 }
@@ -87,11 +121,19 @@ pub fn measure(series: &Series, interrupted: &AtomicBool) -> Result<Vec<Row>, Se
     // Whatever of it stays, it is in a folder for what may go away.
     let _removes = LastAct::new(move || drop(std::fs::remove_dir_all(&place)));
     let mut rows: Vec<Row> = Vec::new();
-    for kind in kinds(series.soft_float) {
+    let mut published = None;
+    for kind in series.kinds.each(series.soft_float) {
         let first = rows.len();
+        let noise = series.noise(kind)?;
+        // The first of all kinds.
+        let published = published.get_or_insert_with(|| noise.clone());
         for &board in &series.boards {
             let options = series.options(board, kind, folder.path());
-            rows.push(Row::new(board, &render::render(&options, interrupted)?.report));
+            let mut row = Row::new(board, kind, &render::render(&options, interrupted)?.report);
+            if let (Some(noise), Some(published)) = (&noise, published.as_ref()) {
+                row.add_noise(noise, published, rows.iter().find(|row| row.board == board));
+            }
+            rows.push(row);
         }
         let others = rows[first..].windows(2);
         if let Some(pair) = others
@@ -104,28 +146,65 @@ pub fn measure(series: &Series, interrupted: &AtomicBool) -> Result<Vec<Row>, Se
     Ok(rows)
 }
 
-/// What is rendered on every board.
+/// A kind of picture.
 #[derive(Clone, Copy)]
 struct Kind {
     profile: Arithmetic,
+    integrator: Integrator,
+    sampler: Sampler,
     end: Termination,
     soft_float: Option<SoftFloat>,
 }
 
-fn kinds(soft_float: bool) -> impl Iterator<Item = Kind> {
-    let fixed = Arithmetic::ALL.into_iter().flat_map(|profile| {
-        TERMINATIONS.map(|end| Kind {
+impl Kind {
+    /// As published, by this profile.
+    const fn published(profile: Arithmetic, end: Termination) -> Self {
+        Self {
             profile,
+            integrator: Integrator::Path,
+            sampler: Sampler::Independent,
             end,
             soft_float: None,
-        })
-    });
-    let formats = SoftFloat::ALL.into_iter().filter(move |_| soft_float);
-    fixed.chain(formats.map(|format| Kind {
-        profile: Arithmetic::Precise,
-        end: Termination::Roulette,
-        soft_float: Some(format),
-    }))
+        }
+    }
+}
+
+impl Kinds {
+    /// The first is the published system's profile with roulette.
+    fn each(self, soft_float: bool) -> Vec<Kind> {
+        let published = Arithmetic::ALL
+            .into_iter()
+            .flat_map(|profile| TERMINATIONS.map(|end| Kind::published(profile, end)));
+        let ways = Integrator::ALL
+            .into_iter()
+            .flat_map(|integrator| Sampler::ALL.map(|sampler| (integrator, sampler)));
+        let ways = ways.filter(|way| *way != (Integrator::Path, Sampler::Independent));
+        let mut kinds: Vec<Kind> = published.collect();
+        match self {
+            Self::All => {
+                for (integrator, sampler) in ways {
+                    for kind in 0..4 {
+                        kinds.push(Kind {
+                            integrator,
+                            sampler,
+                            ..kinds[kind]
+                        });
+                    }
+                }
+            }
+            Self::Few => kinds.push(Kind {
+                integrator: Integrator::NextEvent,
+                sampler: Sampler::Kronecker,
+                ..Kind::published(Arithmetic::Precise, Termination::Roulette)
+            }),
+        }
+        let formats = SoftFloat::ALL.into_iter().filter(|_| soft_float);
+        kinds.extend(formats.map(|format| Kind {
+            soft_float: Some(format),
+            ..Kind::published(Arithmetic::Precise, Termination::Roulette)
+        }));
+        kinds
+    }
 }
 
 /// Why there is no list.
@@ -155,8 +234,8 @@ impl Series {
                 spp: self.spp,
                 cores: self.cores,
                 profile: kind.profile,
-                integrator: None,
-                sampler: None,
+                integrator: Some(kind.integrator),
+                sampler: Some(kind.sampler),
                 epsilon: None,
                 termination: End(kind.end),
                 pixels: Pixels::Leased,
@@ -179,13 +258,33 @@ impl Series {
     }
 }
 
+impl Series {
+    /// The noise of a kind; the same on every board, and of soft float that of its profile.
+    fn noise(&self, kind: Kind) -> Result<Option<Noise>, SeriesError> {
+        let scene = Scene::load(&self.scene).map_err(RenderError::from)?;
+        let compiled = compile(&scene, self.size.width, self.size.height, kind.integrator);
+        let plan = Plan {
+            width: self.size.width,
+            height: self.size.height,
+            spp: self.noise_spp,
+            samples_per_unit: samples_per_unit(&scene, self.noise_spp, kind.end),
+            seed: NOISE_SEED,
+            termination: kind.end,
+            epsilon: kind.profile.epsilon(scene.scale().magnification),
+        };
+        Ok(noise::noise(kind.profile, kind.sampler, &compiled, &plan, |_| ()))
+    }
+}
+
 impl Row {
-    fn new(board: Board, report: &Report) -> Self {
+    fn new(board: Board, kind: Kind, report: &Report) -> Self {
         let lockstep = report.lockstep_error;
         Self {
             board,
             profile: report.profile.clone(),
             scene: report.scene.clone(),
+            integrator: kind.integrator,
+            sampler: kind.sampler,
             termination: report.termination.clone(),
             compiler: report.images.first().and_then(|image| image.compiler.clone()),
             itcm_bytes: report.images.first().map(|image| image.size.itcm_bytes),
@@ -200,15 +299,32 @@ impl Row {
             lockstep_bias_standard_error: lockstep.and_then(|lockstep| lockstep.bias_standard_error),
             rmse: report.error.rmse,
             rmse_at_most: report.error.rmse_at_most,
+            variance_mean: None,
+            variance_median: None,
+            variance_p95: None,
+            efficiency: None,
             image_sha256: report.image_sha256.clone(),
         }
     }
-}
 
-impl Row {
-    /// Board, profile and way to end a path.
+    /// Says how noisy it is, beside the published system's noise and its row, which is none for that itself.
+    fn add_noise(&mut self, noise: &Noise, published: &Noise, its_row: Option<&Self>) {
+        self.variance_mean = Some(noise.mean());
+        self.variance_median = Some(noise.quantile(0.5));
+        self.variance_p95 = Some(noise.quantile(0.95));
+        let its_cycles = its_row.map_or(self.cycles_per_sample, |row| row.cycles_per_sample);
+        let fewer = its_cycles
+            .zip(self.cycles_per_sample)
+            .map(|(theirs, ours)| theirs / ours);
+        self.efficiency = fewer.map(|fewer| fewer * noise.less_than(published));
+    }
+
+    /// Board, profile, integrator, sampler and way to end a path.
     pub fn name(&self) -> String {
-        format!("{} {} {}", self.board, self.profile, self.termination)
+        format!(
+            "{} {} {} {} {}",
+            self.board, self.profile, self.integrator, self.sampler, self.termination
+        )
     }
 
     /// Its cycles, and by how much they may be more or less where the model leaves that open.
@@ -233,8 +349,10 @@ impl Row {
 /// The list for people, boards side by side, what is behind a `±` being one standard error at most.
 pub fn table(rows: &[Row]) -> String {
     let mut lines = vec![format!(
-        "{:14} {:10} {:12} {:>8} {:>12} {:>17} {:>6} {:>18} {:>18} {:>9}",
+        "{:14} {:10} {:11} {:8} {:11} {:>6} {:>12} {:>15} {:>5} {:>18} {:>18} {:>8} {:>8} {:>8} {:>8} {:>10}",
         "profile",
+        "integrator",
+        "sampler",
         "paths",
         "board",
         "code",
@@ -243,7 +361,11 @@ pub fn table(rows: &[Row]) -> String {
         "rays",
         "bias",
         "arithmetic bias",
-        "rmse <="
+        "rmse <=",
+        "variance",
+        "median",
+        "95 %",
+        "efficiency"
     )];
     let percent = |share: Option<f64>, error: Option<f64>| match (share, error) {
         (Some(share), Some(error)) => format!("{:+.3} ± {:.3} %", 100.0 * share, 100.0 * error),
@@ -254,8 +376,10 @@ pub fn table(rows: &[Row]) -> String {
         |value: Option<f64>, digits| value.map_or("-".to_owned(), |value| format!("{value:.digits$}"));
     lines.extend(rows.iter().map(|row| {
         format!(
-            "{:14} {:10} {:12} {:>8} {:>12} {:>17} {:>6} {:>18} {:>18} {:>9}",
+            "{:14} {:10} {:11} {:8} {:11} {:>6} {:>12} {:>15} {:>5} {:>18} {:>18} {:>8} {:>8} {:>8} {:>8} {:>10}",
             row.profile,
+            row.integrator,
+            row.sampler,
             row.termination,
             row.board,
             row.itcm_bytes.map_or("-".to_owned(), |bytes| bytes.to_string()),
@@ -265,6 +389,10 @@ pub fn table(rows: &[Row]) -> String {
             percent(row.bias, row.bias_standard_error),
             percent(row.lockstep_bias, row.lockstep_bias_standard_error),
             figure(row.rmse_at_most, 5),
+            figure(row.variance_mean, 4),
+            figure(row.variance_median, 4),
+            figure(row.variance_p95, 4),
+            figure(row.efficiency, 1),
         )
     }));
     lines.join("\n")

@@ -71,7 +71,8 @@ impl Arithmetic {
 }
 
 /// Where a picture's random numbers come from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, clap::ValueEnum, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Sampler {
     /// Each sample's are independent of all others', as published.
     Independent,

@@ -6,5 +6,6 @@ pub mod direct;
 pub mod divergence;
 pub mod equivalence;
 pub mod lockstep;
+pub mod noise;
 pub mod reference;
 pub mod shortcuts;
