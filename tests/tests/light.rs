@@ -28,8 +28,8 @@ const SURE: f64 = 4.0;
 fn all_scenes_are_as_bright_as_they_should() {
     for file in scenes() {
         let scene = Scene::load(&file).unwrap_or_else(|error| panic!("{error}"));
-        let found = estimate_by::<Precise>(&scene, &plan::<Precise>(32, 24, 64), Integrator::NextEvent);
-        let known = reference(&scene, 32, 24, 1024);
+        let found = estimate_by::<Precise>(&scene, &plan::<Precise>(16, 12, 64), Integrator::NextEvent);
+        let known = reference(&scene, 16, 12, 512);
         let found = compare(&known.pooled_noise(found, Integrator::NextEvent), &known.estimate).unwrap();
         let (bias, error) = (
             found.bias.unwrap_or(0.0),
