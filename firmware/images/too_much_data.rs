@@ -11,7 +11,7 @@ use panic_halt as _;
 use runtime::{Board, ExitCode};
 
 /// More than half of what the boot block leaves of data memory: it fits by itself, but not with the stacks.
-static mut TOO_MUCH: [u32; 6 * 1024] = [0; 6 * 1024];
+static mut TOO_MUCH: [u32; 3 * 1024] = [0; 3 * 1024];
 
 #[board::entry]
 fn start() -> ! {

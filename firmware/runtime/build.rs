@@ -4,7 +4,7 @@
 //! which every combination would be a different crate graph:
 //!
 //! - `TRACER_PROFILE`: `precise` (the default) or `paper`;
-//! - `TRACER_NEEDS`: a comma-separated list of words of [`tracer::scene::Capability`]; all of them by default.
+//! - `TRACER_NEEDS`: a comma-separated list of words of [`tracer::scene::Capability`]; all that paths may need by default.
 
 use std::path::Path;
 use std::{env, fs};
@@ -35,7 +35,7 @@ fn profile() -> Result<&'static str, String> {
 
 fn needs() -> Result<Capabilities, String> {
     let Ok(list) = env::var("TRACER_NEEDS") else {
-        return Ok(Capabilities::ALL);
+        return Ok(Capabilities::PATHS);
     };
     let words = list.split(',').map(str::trim).filter(|word| !word.is_empty());
     words

@@ -73,6 +73,14 @@ impl Capabilities {
     /// Everything there is.
     pub const ALL: Self = Self::of(Capability::ALL);
 
+    /// What paths may need that meet light and do not look for it, with independent samples. All there is does not fit a core together.
+    pub const PATHS: Self = Self::ALL
+        .without(Capability::Lights)
+        .without(Capability::ManyLights)
+        .without(Capability::ClippedLights)
+        .without(Capability::BallLights)
+        .without(Capability::Kronecker);
+
     /// The set of these.
     pub const fn of(capabilities: &[Capability]) -> Self {
         let mut set = Self::NONE;

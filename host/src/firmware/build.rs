@@ -138,7 +138,7 @@ pub fn build_examples(
 ) -> Result<Vec<PathBuf>, FirmwareError> {
     let recipe = Recipe {
         profile: Arithmetic::Precise,
-        needs: Capabilities::ALL,
+        needs: Capabilities::PATHS,
         log,
         soft_float: None,
     };

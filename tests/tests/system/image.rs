@@ -44,7 +44,7 @@ fn example(board: Board, name: &str) -> (Output, PathBuf) {
         &toolchain(),
         board,
         "build",
-        &recipe(Arithmetic::Precise, Capabilities::ALL),
+        &recipe(Arithmetic::Precise, Capabilities::PATHS),
     )
     .unwrap();
     let output = command.args(["--example", name]).output().unwrap();
@@ -58,7 +58,7 @@ fn linked_by_the_system(board: Board, name: &str) -> (Output, PathBuf) {
         &toolchain(),
         board,
         "rustc",
-        &recipe(Arithmetic::Precise, Capabilities::ALL),
+        &recipe(Arithmetic::Precise, Capabilities::PATHS),
     )
     .unwrap();
     command.args(["--example", name, "--", "-Clinker-flavor=gnu-lld"]);
@@ -158,7 +158,7 @@ fn a_panic_and_a_fault_say_what_and_where_and_end_the_core() {
 fn every_image_fits_and_holds_no_more_than_its_scene_needs() {
     let toolchain = toolchain();
     for (board, profile) in both() {
-        let full = build(&toolchain, board, &recipe(profile, Capabilities::ALL))
+        let full = build(&toolchain, board, &recipe(profile, Capabilities::PATHS))
             .unwrap()
             .size;
         println!("{board}, {profile}: {full}");

@@ -26,7 +26,7 @@ struct Flags {
 fn image(board: Board, profile: Arithmetic, log: Option<Level>) -> Image {
     let recipe = Recipe {
         profile,
-        needs: Capabilities::ALL,
+        needs: Capabilities::PATHS,
         log,
         soft_float: None,
     };

@@ -239,7 +239,7 @@ fn no_core_outlives_a_host_that_is_killed() {
 fn the_collector_takes_cores_that_are_started_elsewhere() {
     let recipe = Recipe {
         profile: Arithmetic::Precise,
-        needs: Capabilities::ALL,
+        needs: Capabilities::PATHS,
         log: None,
         soft_float: None,
     };

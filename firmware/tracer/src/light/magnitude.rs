@@ -98,7 +98,7 @@ impl Magnitude {
     }
 
     /// The quotient, within 2 of the last of 31 bits. By 0 it is as large as can be.
-    #[inline]
+    #[inline(never)]
     #[must_use]
     pub const fn over(self, divisor: Self) -> Self {
         // Half of the dividend, so that the quotient is below 1.
@@ -118,6 +118,19 @@ impl Magnitude {
             (self.mantissa as u64) << places
         } else {
             u64::MAX
+        }
+    }
+
+    /// A share in 0:32, cut, of which all ones stand for 1.
+    #[inline]
+    pub const fn to_share(self) -> u32 {
+        let places = -32 - self.exponent;
+        if places < 0 {
+            u32::MAX
+        } else if places < 32 {
+            self.mantissa >> places
+        } else {
+            0
         }
     }
 

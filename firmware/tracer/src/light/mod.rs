@@ -97,7 +97,11 @@ impl<'s> Lights<'s> {
     }
 
     /// Whether all records are sound, in a scene with so many materials, and of no other kind than it needs.
-    pub(crate) fn is_sound(&self, materials: usize, needs: Capabilities) -> bool {
+    #[inline]
+    pub(crate) fn is_sound(&self, materials: usize, needs: Capabilities, image: Capabilities) -> bool {
+        if !image.has(Capability::Lights) {
+            return self.caps.is_empty() && self.balls.is_empty();
+        }
         fn all<L: Light>(lights: &[L], materials: usize, is_sound: fn(&L) -> bool) -> bool {
             lights
                 .iter()
@@ -107,9 +111,11 @@ impl<'s> Lights<'s> {
         (none || needs.has(Capability::Lights))
             && (self.caps.len() + self.balls.len() < 2 || needs.has(Capability::ManyLights))
             && (needs.has(Capability::ClippedLights) || !self.has_clipped())
-            && (self.balls.is_empty() || needs.has(Capability::BallLights))
             && all(self.caps, materials, CapLight::is_sound)
-            && all(self.balls, materials, BallLight::is_sound)
+            && (self.balls.is_empty()
+                || image.has(Capability::BallLights)
+                    && needs.has(Capability::BallLights)
+                    && all(self.balls, materials, BallLight::is_sound))
     }
 
     /// Whether hollow shapes may hide parts of any.

@@ -131,9 +131,7 @@ impl LightNumbers for Mixed {
 
     #[inline]
     fn share(balance: Magnitude) -> U0F32 {
-        // All ones stand for 1.
-        let share = balance.to_fixed(32);
-        U0F32::from_bits(if share >> 32 == 0 { share as u32 } else { u32::MAX })
+        U0F32::from_bits(balance.to_share())
     }
 
     #[inline]

@@ -84,6 +84,7 @@ impl Header {
 
 impl<'s> Scene<'s> {
     /// A view of the bytes that the host's scene compiler wrote, for an image with these capabilities.
+    #[inline]
     pub fn view(mut bytes: &'s [u8], image: Capabilities) -> Result<Self, BlobError> {
         let [header] = take_records::<Header>(&mut bytes, 1)? else {
             return Err(BlobError::Length);
@@ -115,19 +116,21 @@ impl<'s> Scene<'s> {
         if !bytes.is_empty() {
             return Err(BlobError::Length);
         }
-        scene.check(header.needs)?;
+        // What the image lacks is not needed, so that it takes no code to look at.
+        scene.check(header.needs, image)?;
         Ok(scene)
     }
 
     /// Whether all records are sound, and of no other shape or BSDF than the header says.
-    fn check(&self, needs: Capabilities) -> Result<(), BlobError> {
+    #[inline]
+    fn check(&self, needs: Capabilities, image: Capabilities) -> Result<(), BlobError> {
         for material in self.materials {
             match material.capability() {
                 Some(capability) if needs.has(capability) || material.absorbs_all() => {}
                 _ => return Err(BlobError::BadMaterial),
             }
         }
-        if !self.lights.is_sound(self.materials.len(), needs) {
+        if !self.lights.is_sound(self.materials.len(), needs, image) {
             return Err(BlobError::BadLight);
         }
         let hollow_spheres = self.aggregate.primitives.hollow_spheres.len();
@@ -140,6 +143,7 @@ impl<'s> Scene<'s> {
         }
         let mut check = Check {
             needs,
+            image,
             materials: self.materials.len(),
             sound: true,
         };
@@ -155,13 +159,19 @@ impl<'s> Scene<'s> {
 /// Looks at each shape's record.
 struct Check {
     needs: Capabilities,
+    image: Capabilities,
     materials: usize,
     sound: bool,
 }
 
 impl Visitor for Check {
+    #[inline]
     fn visit<S: Shape>(&mut self, _first: usize, shapes: &[S]) {
         const { assert!(size_of::<S>() <= MAX_RECORD && size_of::<S>().is_multiple_of(8)) };
+        if !self.image.has(S::CAPABILITY) {
+            self.sound &= shapes.is_empty();
+            return;
+        }
         let all = |sound: fn(&Self, &S) -> bool| shapes.iter().all(|shape| sound(self, shape));
         self.sound = self.sound
             && (shapes.is_empty() || self.needs.has(S::CAPABILITY))
