@@ -11,6 +11,7 @@ mod exact;
 mod figures;
 mod hard;
 mod intersection;
+mod light;
 mod part;
 mod plot;
 mod reintersection;
@@ -31,5 +32,6 @@ pub const PARTS: &[Part] = &[
     figures::PART,
     convergence::PART,
     hard::PART,
+    light::PART,
     boards::PART,
 ];
