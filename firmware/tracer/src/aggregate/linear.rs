@@ -97,7 +97,7 @@ impl Linear<'_> {
     #[cold]
     #[inline(never)]
     fn any_wall<P: Profile, F: Needs>(&self, sight: &Sight<P::Numbers>, epsilon: Length<P>) -> bool {
-        self.any::<P, Walls<F>>(sight, epsilon)
+        !sight.is_within && self.any::<P, Walls<F>>(sight, epsilon)
     }
 
     /// The surface at a hit; none where there is no such primitive.
@@ -150,7 +150,7 @@ impl<F: Needs> Needs for Within<F> {
 struct Walls<F>(PhantomData<F>);
 
 impl<F: Needs> Needs for Walls<F> {
-    const NEEDS: Capabilities = Capabilities::of(&[Capability::Hollow]);
+    const NEEDS: Capabilities = Capabilities::of(&[Capability::Hollow, Capability::ClippedLights]);
 }
 
 /// Primitives of a kind by how many are left with them: the one number that a loop over them has to count anyway.
@@ -227,7 +227,9 @@ struct Occluder<'a, P: Profile, F> {
 impl<P: Profile, F: Needs> Visitor for Occluder<'_, P, F> {
     #[inline]
     fn visit<S: Shape>(&mut self, first: usize, shapes: &[S]) {
-        if self.found || !F::NEEDS.has(S::CAPABILITY) {
+        // Without lights that walls cut, no wall stands in any sight.
+        let is_never = S::CAPABILITY == Capability::Hollow && !F::NEEDS.has(Capability::ClippedLights);
+        if self.found || is_never || !F::NEEDS.has(S::CAPABILITY) {
             return;
         }
         let Sight {
@@ -312,11 +314,14 @@ impl Aggregate for Linear<'_> {
 
     #[inline]
     fn occludes<P: Profile, F: Needs>(&self, sight: &Sight<P::Numbers>, epsilon: Length<P>) -> bool {
-        self.any::<P, Within<F>>(sight, epsilon)
-            || F::NEEDS.has(Capability::Hollow)
-                && F::NEEDS.has(Capability::ClippedLights)
-                && !sight.is_within
-                && self.any_wall::<P, F>(sight, epsilon)
+        // Of the same needs as what looks for the nearest hit, whose code it shares.
+        let within = if F::NEEDS.has(Capability::Room) {
+            self.any::<P, Within<F>>(sight, epsilon)
+        } else {
+            self.any::<P, F>(sight, epsilon)
+        };
+        let walls_are_apart = F::NEEDS.has(Capability::Room) && F::NEEDS.has(Capability::ClippedLights);
+        within || walls_are_apart && self.any_wall::<P, F>(sight, epsilon)
     }
 
     fn bounds(&self) -> Option<Bounds> {

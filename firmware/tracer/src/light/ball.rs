@@ -38,6 +38,12 @@ impl BallLight {
         self.radius > I16F16::ZERO && self.reach.is_sound() && self.is_clipped <= 1 && self.reserved == 0
     }
 
+    /// Kept in one place: it is long.
+    #[inline(never)]
+    fn weigh<N: LightNumbers>(&self, cosine: N::Unit, cone: N::Cone) -> N::Balance {
+        N::balance_of_cone(cosine, cone, self.reach)
+    }
+
     /// The way to its centre, and the cone that it fills; none from within.
     fn cone<N: LightNumbers>(&self, point: [N::Length; 3]) -> Option<([N::Length; 3], N::Cone)> {
         let to_centre = sub(self.centre.map(N::length), point);
@@ -79,7 +85,7 @@ impl Light for BallLight {
         (discriminant >= N::NO_SQUARE).then(|| Aim {
             direction,
             distance: along - N::root(discriminant),
-            balance: N::balance_of_cone(cosine, cone, self.reach),
+            balance: self.weigh::<N>(cosine, cone),
         })
     }
 
@@ -90,6 +96,6 @@ impl Light for BallLight {
         _point: [N::Length; 3],
     ) -> Option<N::Balance> {
         let (_, cone) = self.cone::<N>(ray.origin)?;
-        Some(N::balance_of_cone(cosine, cone, self.reach))
+        Some(self.weigh::<N>(cosine, cone))
     }
 }

@@ -138,16 +138,12 @@ impl<'s> Lights<'s> {
         } else {
             &[]
         };
-        if !F::NEEDS.has(Capability::ManyLights) || self.caps.len() + balls.len() < 2 {
-            return match self.caps {
-                [light, ..] => connect::<P>(light, interaction, random),
-                [] => connect::<P>(balls.first()?, interaction, random),
-            };
-        }
-        let chance = random.fraction();
-        match chosen(self.caps, chance) {
+        // The threshold of an only one is above every fraction.
+        let is_choice = F::NEEDS.has(Capability::ManyLights) && self.caps.len() + balls.len() > 1;
+        let chance = if is_choice { random.fraction() } else { U0F32::ZERO };
+        match chosen::<_, F>(self.caps, chance) {
             Some(light) => connect::<P>(light, interaction, random),
-            None => connect::<P>(chosen(balls, chance)?, interaction, random),
+            None => connect::<P>(chosen::<_, F>(balls, chance)?, interaction, random),
         }
     }
 
@@ -175,7 +171,10 @@ impl<'s> Lights<'s> {
     }
 }
 
-fn chosen<L: Light>(lights: &[L], chance: U0F32) -> Option<&L> {
+fn chosen<L: Light, F: Needs>(lights: &[L], chance: U0F32) -> Option<&L> {
+    if !F::NEEDS.has(Capability::ManyLights) {
+        return lights.first();
+    }
     lights.get(lights.partition_point(|light| light.threshold() < chance))
 }
 
