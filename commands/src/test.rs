@@ -40,6 +40,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
         system_linker: true,
         system_compiler: true,
         cxx: true,
+        gxx: true,
         ..Wanted::default()
     };
     let tools = step("set-up", || {

@@ -3,6 +3,7 @@
 mod generators;
 mod intersections;
 mod ops;
+mod reference;
 mod trace;
 
 use std::process::ExitCode;
@@ -20,6 +21,12 @@ pub(crate) enum Bench {
     /// Instructions and cycles are those of an emulated core without the loop around them: once compiled in line, once
     /// called. A star marks what nothing else of the operation beats in cost and in worst error.
     Ops(ops::Arguments),
+    /// Print how efficient the double-precision reference is beside a plain path tracer in C++
+    ///
+    /// Efficiency is one over variance times time. Both render the same picture on one thread, in turns; what of the two is compiled C++ is
+    /// built by g++ first. Fails where they disagree about the picture, and where the reference is less than 10 times as efficient
+    /// on the Cornell box.
+    Reference(reference::Arguments),
     /// Print what a whole sample costs by board, profile and way to end a path, and how wrong it is
     ///
     /// Renders the same small picture by each of them. It is the same picture on every board. What is behind a `±` of cycles is what the
@@ -32,6 +39,7 @@ pub(crate) fn run(bench: &Bench, interrupted: &AtomicBool) -> anyhow::Result<Exi
         Bench::Generators(arguments) => generators::run(arguments),
         Bench::Intersections(arguments) => intersections::run(arguments),
         Bench::Ops(arguments) => ops::run(arguments),
+        Bench::Reference(arguments) => reference::run(arguments),
         Bench::Trace(arguments) => trace::run(arguments, interrupted),
     }
 }

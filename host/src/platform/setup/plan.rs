@@ -26,6 +26,8 @@ pub struct Wanted {
     pub system_compiler: bool,
     /// A compiler for libFuzzer, which is C++.
     pub cxx: bool,
+    /// GNU's compiler of C++, for the reference's rival.
+    pub gxx: bool,
 }
 
 /// A Rust compiler found on the machine, recent enough for this workspace.
@@ -86,6 +88,8 @@ pub struct Facts {
     pub system_compiler: bool,
     /// `c++`.
     pub cxx: bool,
+    /// `g++`.
+    pub gxx: Option<PathBuf>,
     /// `cargo fmt` works with the cargo in use.
     pub rustfmt: bool,
     /// `cargo clippy` works with the cargo in use.
@@ -107,6 +111,8 @@ pub struct Tools {
     pub gdb: Option<PathBuf>,
     /// The linker of a machine without rustup, where it was wanted.
     pub system_linker: Option<PathBuf>,
+    /// GNU's compiler of C++, where it was wanted.
+    pub gxx: Option<PathBuf>,
     /// What builds the firmware, where it was wanted.
     pub firmware: Option<Toolchain>,
 }
@@ -189,6 +195,7 @@ const LINKER: &str = "a linker for the boards (rust-lld or ld.lld)";
 const SYSTEM_LINKER: &str = "the linker of machines without rustup (ld.lld)";
 const SYSTEM_COMPILER: &str = "the compiler of machines without rustup (rustc-web)";
 const CXX: &str = "a compiler for libFuzzer (c++)";
+const GXX: &str = "GNU's compiler of C++ (g++)";
 const RUSTFMT: &str = "cargo fmt";
 const CLIPPY: &str = "cargo clippy";
 const FIRMWARE_CLIPPY: &str = "clippy for the compiler of the boards";
@@ -200,7 +207,7 @@ struct Gap {
     packages: &'static [&'static str],
 }
 
-const GAPS: [Gap; 12] = [
+const GAPS: [Gap; 13] = [
     Gap {
         name: QEMU,
         component: None,
@@ -247,6 +254,11 @@ const GAPS: [Gap; 12] = [
         packages: &["g++"],
     },
     Gap {
+        name: GXX,
+        component: None,
+        packages: &["g++"],
+    },
+    Gap {
         name: RUSTFMT,
         component: Some("rustfmt"),
         packages: &["rustfmt-web"],
@@ -267,6 +279,7 @@ const GAPS: [Gap; 12] = [
 pub fn decide(facts: &Facts, wanted: Wanted) -> Plan {
     let with_source = facts.compilers.iter().find(|compiler| compiler.has_source);
     let lacks_linker = wanted.firmware && facts.linker.is_none();
+    let lacks_cxx = wanted.cxx && !facts.cxx;
     let lacks = |name| match name {
         QEMU => wanted.qemu && facts.qemu.is_none(),
         DIEHARDER => wanted.dieharder && facts.dieharder.is_none(),
@@ -276,7 +289,8 @@ pub fn decide(facts: &Facts, wanted: Wanted) -> Plan {
         LINKER => lacks_linker,
         SYSTEM_LINKER => wanted.system_linker && facts.system_linker.is_none() && !lacks_linker,
         SYSTEM_COMPILER => wanted.system_compiler && !facts.system_compiler,
-        CXX => wanted.cxx && !facts.cxx,
+        CXX => lacks_cxx,
+        GXX => wanted.gxx && facts.gxx.is_none() && !lacks_cxx,
         RUSTFMT => wanted.lints && !facts.rustfmt,
         CLIPPY => wanted.lints && !facts.clippy,
         _ => wanted.lints && wanted.firmware && lacks_second_clippy(facts),
@@ -297,6 +311,7 @@ pub fn decide(facts: &Facts, wanted: Wanted) -> Plan {
         dieharder: facts.dieharder.clone().filter(|_| wanted.dieharder),
         gdb: facts.gdb.clone().filter(|_| wanted.gdb),
         system_linker: facts.system_linker.clone().filter(|_| wanted.system_linker),
+        gxx: facts.gxx.clone().filter(|_| wanted.gxx),
         firmware,
     })
 }
@@ -329,8 +344,8 @@ fn fill(gaps: &[&Gap], facts: &Facts) -> Plan {
         }
         (false, Apt::Absent) => {
             let advice = "this is not a Debian, so install them with this system's own means: the programs \
-                          qemu-system-arm, gdb-multiarch, tshark, ld.lld, c++ and dieharder in PATH, and the rustup components \
-                          rust-src, rustfmt and clippy";
+                          qemu-system-arm, gdb-multiarch, tshark, ld.lld, c++, g++ and dieharder in PATH, and the rustup \
+                          components rust-src, rustfmt and clippy";
             return Plan::ByHand {
                 missing,
                 advice: advice.to_owned(),

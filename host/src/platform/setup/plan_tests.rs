@@ -12,6 +12,7 @@ const ALL: Wanted = Wanted {
     system_linker: false,
     system_compiler: false,
     cxx: false,
+    gxx: false,
 };
 
 fn compiler(at: &str, has_source: bool) -> Compiler {
@@ -35,6 +36,7 @@ fn fresh() -> Facts {
         system_linker: None,
         system_compiler: false,
         cxx: false,
+        gxx: None,
         rustfmt: true,
         clippy: true,
         rustup: Rustup::Present,
@@ -131,6 +133,7 @@ fn only_what_is_wanted_is_installed() {
             dieharder: None,
             system_linker: None,
             gdb: None,
+            gxx: None,
             firmware: None
         })
     );
@@ -157,6 +160,10 @@ fn only_what_is_wanted_is_installed() {
     assert!(announced(&facts, packets).ends_with("--no-install-recommends tshark"));
     let fuzzing = Wanted { cxx: true, ..native };
     assert!(announced(&facts, fuzzing).ends_with("--no-install-recommends g++"));
+    let rival = Wanted { gxx: true, ..native };
+    assert!(announced(&facts, rival).ends_with("--no-install-recommends g++"));
+    let both = Wanted { cxx: true, ..rival };
+    assert!(announced(&facts, both).ends_with("--no-install-recommends g++"));
 }
 
 #[test]

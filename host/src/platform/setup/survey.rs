@@ -37,6 +37,7 @@ pub fn survey() -> Facts {
         system_linker,
         system_compiler,
         cxx: program("c++").is_some(),
+        gxx: program("g++"),
         rustfmt: in_use
             .as_deref()
             .is_some_and(|sysroot| sysroot.join("bin/cargo-fmt").is_file()),
