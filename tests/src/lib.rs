@@ -141,6 +141,19 @@ pub fn qemu() -> PathBuf {
     tools.qemu.expect("set-up gives what is wanted")
 }
 
+/// GNU's compiler of C++, which must be there.
+///
+/// # Panics
+/// If it is missing.
+pub fn gxx() -> PathBuf {
+    let wanted = Wanted {
+        gxx: true,
+        ..Wanted::default()
+    };
+    let tools = setup::ensure(wanted, Install::Forbidden).unwrap_or_else(|error| panic!("{error}"));
+    tools.gxx.expect("set-up gives what is wanted")
+}
+
 /// A folder of a name that nobody expects: with a comma, which ends a value on QEMU's command line, and bytes that are no UTF-8.
 ///
 /// # Panics

@@ -280,3 +280,6 @@ impl Outcome {
 fn colour(mean: &[f64; 3]) -> String {
     mean.map(|channel| format!("{channel:.4}")).join(" ")
 }
+
+#[cfg(test)]
+mod tests;

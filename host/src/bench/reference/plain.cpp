@@ -70,8 +70,8 @@ enum Kind { DIFFUSE, MIRROR, GLASS };
 struct Sphere {
     Vector centre;
     double square;
-    // Which of its two crossings is a surface: of an opaque solid the near one, of a hollow one the far one, of glass both.
-    bool near, far;
+    // Rays are always inside, so that the near crossing is never a surface.
+    bool hollow;
 };
 
 struct Surface {
@@ -116,7 +116,7 @@ int first_hit(const Scene &scene, const Ray &ray, int departed, double &nearest)
             }
             const double half_chord = std::sqrt(square);
             distance = along - half_chord;
-            if (!sphere.near || (sphere.far && distance <= 0.0)) {
+            if (sphere.hollow || distance <= 0.0) {
                 distance = along + half_chord;
             }
         }
@@ -291,7 +291,7 @@ void read_sphere(std::istream &text, Scene &scene) {
     sphere.centre = surface.centre = vector(text);
     const double radius = number(text);
     sphere.square = radius * radius;
-    const bool hollow = number(text) != 0.0;
+    sphere.hollow = number(text) != 0.0;
     surface.emission = vector(text);
     surface.colour = vector(text);
     surface.strongest = std::fmax(surface.colour.x, std::fmax(surface.colour.y, surface.colour.z));
@@ -301,8 +301,6 @@ void read_sphere(std::istream &text, Scene &scene) {
     }
     surface.kind = static_cast<Kind>(kind);
     surface.index = number(text);
-    sphere.near = !hollow;
-    sphere.far = hollow || surface.kind == GLASS;
     scene.spheres.push_back(sphere);
     scene.surfaces.push_back(surface);
 }
