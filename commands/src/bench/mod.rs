@@ -23,9 +23,8 @@ pub(crate) enum Bench {
     Ops(ops::Arguments),
     /// Print how efficient the double-precision reference is beside a plain path tracer in C++
     ///
-    /// Efficiency is one over variance times time. Both render the same picture on one thread, in turns; what of the two is compiled C++ is
-    /// built by g++ first. Fails where they disagree about the picture, and where the reference is less than 10 times as efficient
-    /// on the Cornell box.
+    /// Efficiency is one over variance times time. g++ builds the program, and both render the same picture in turns, on one thread
+    /// each. Fails where they disagree about the picture, and where the reference is less than 10 times as efficient on the Cornell box.
     Reference(reference::Arguments),
     /// Print what a whole sample costs by board, profile and way to end a path, and how wrong it is
     ///

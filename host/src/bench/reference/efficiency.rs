@@ -12,7 +12,7 @@ const ROUNDING: f64 = 1e-12;
 pub struct Means {
     /// The arithmetic mean: it is that of the noisiest pixels.
     pub arithmetic: f64,
-    /// The geometric mean: in a ratio of two every pixel counts alike.
+    /// The geometric mean: in a ratio of two every pixel counts alike. Of variances by few samples it is too small.
     pub geometric: f64,
 }
 
