@@ -65,7 +65,11 @@ fn all_scenes_are_as_bright_as_they_should() {
 #[test]
 fn a_plain_path_tracer_in_another_language_finds_scenes_as_bright() {
     let plain = Plain::build(&gxx()).unwrap_or_else(|error| panic!("{error}"));
-    for file in ["scenes/cornell.toml", "tests/scenes/cut-open.toml", "tests/scenes/open.toml"] {
+    for file in [
+        "scenes/cornell.toml",
+        "tests/scenes/cut-open.toml",
+        "tests/scenes/open.toml",
+    ] {
         let scene = load(&repository(file));
         let job = Job {
             width: 24,
