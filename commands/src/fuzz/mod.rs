@@ -32,7 +32,7 @@ pub(crate) struct Arguments {
 }
 
 /// How long a target runs in `cargo xtask test`.
-pub(crate) const SECONDS: u32 = 6;
+pub(crate) const SECONDS: u32 = 4;
 
 /// Linux's folder in memory, for the targets whose readers want a file: a disk takes longer than they do.
 const MEMORY: &str = "/dev/shm";

@@ -4,6 +4,8 @@
 
 #![expect(clippy::print_stdout, reason = "figures of tests, by helpers of theirs")]
 
+mod light;
+
 use fixedmath::U48F16;
 use host::oracle::compare::{Comparison, compare};
 use host::oracle::direct;

@@ -2,8 +2,6 @@
 //!
 //! Seeds are fixed, so each of these has one outcome. The bounds are what sampling noise allows, not what was found.
 
-#![expect(clippy::print_stdout, reason = "figures of tests, by helpers of theirs")]
-
 use std::path::{Path, PathBuf};
 
 use host::bench::reference::plain::Plain;
