@@ -34,7 +34,7 @@ pub(crate) struct Arguments {
     /// Samples per pixel by which noise is told
     #[arg(long, value_name = "N", default_value = "4096", value_parser = host::render::options::samples_per_pixel)]
     noise_spp: u32,
-    /// Only the profiles as published, and ours as it is by default
+    /// Only the profiles as published, and ours looking for light with samples that keep apart
     #[arg(long)]
     few: bool,
     /// Number of cores

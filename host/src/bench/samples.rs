@@ -51,7 +51,7 @@ pub struct Series {
 pub enum Kinds {
     /// Each profile by each integrator with each sampler.
     All,
-    /// Each profile as published, and ours as it is by default.
+    /// Each profile as published, and ours looking for light with samples that keep apart.
     Few,
 }
 

@@ -1,4 +1,4 @@
-//! Looking for light finds what paths find: every scene of the repository, and emitters that are hard to look for.
+//! Looking for light finds what is there, in every scene of the repository.
 //!
 //! Seeds are fixed, so each of these has one outcome. The bounds are what sampling noise allows, not what was found.
 

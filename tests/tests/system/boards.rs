@@ -103,6 +103,10 @@ fn what_a_sample_costs_is_told_for_every_board_and_profile() {
         "rays_per_sample",
         "bias",
         "rmse",
+        "integrator",
+        "variance_mean",
+        "variance_median",
+        "efficiency",
     ] {
         assert!(json.get(key).is_some(), "{key}");
     }

@@ -53,7 +53,7 @@ trait Light {
     /// A direction in which it is, drawn from so that what can be seen of it is found evenly.
     fn aim<N: LightNumbers>(&self, place: &Place<N>, random: &mut impl Random) -> Option<Aim<N>>;
 
-    /// The balance of light that a ray from `place` has met at `point`, at this cosine; none where no connection leads there.
+    /// The balance of light that `ray`, which left its surface at this cosine, has met at `point`; none where no connection leads there.
     fn balance<N: LightNumbers>(
         &self,
         ray: &Ray<N>,
