@@ -54,12 +54,7 @@ impl Arithmetic {
 
     /// The name by which host and cores agree on it and a sampler.
     pub const fn wire_name(self, sampler: Sampler) -> &'static str {
-        match (self, sampler) {
-            (Self::Paper, Sampler::Independent) => Paper::NAME,
-            (Self::Paper, Sampler::Kronecker) => Paper::STRATIFIED_NAME,
-            (Self::Precise, Sampler::Independent) => Precise::NAME,
-            (Self::Precise, Sampler::Kronecker) => Precise::STRATIFIED_NAME,
-        }
+        with_profile!(self, sampler, P => P::NAME)
     }
 
     /// The integrator that a picture has unless another one is asked for.
@@ -69,6 +64,32 @@ impl Arithmetic {
         }
     }
 }
+
+/// Evaluates an expression with the type of a profile and a sampler that are chosen at run time under a name.
+macro_rules! with_profile {
+    ($profile:expr, $sampler:expr, $name:ident => $body:expr) => {{
+        use $crate::firmware::arithmetic::{Arithmetic, Sampler};
+        match ($profile, $sampler) {
+            (Arithmetic::Paper, Sampler::Independent) => {
+                type $name = tracer::profile::Paper;
+                $body
+            }
+            (Arithmetic::Paper, Sampler::Kronecker) => {
+                type $name = tracer::kronecker::Stratified<tracer::profile::Paper>;
+                $body
+            }
+            (Arithmetic::Precise, Sampler::Independent) => {
+                type $name = tracer::profile::Precise;
+                $body
+            }
+            (Arithmetic::Precise, Sampler::Kronecker) => {
+                type $name = tracer::kronecker::Stratified<tracer::profile::Precise>;
+                $body
+            }
+        }
+    }};
+}
+pub(crate) use with_profile;
 
 /// Where a picture's random numbers come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, clap::ValueEnum, serde::Serialize)]

@@ -11,13 +11,12 @@ use std::time::{Duration, Instant};
 use node::{Clock, Fault, Network, Outcome, SendError, StackUse, TICKS_PER_SECOND};
 use rustix::process::{Resource, Rlimit, getrlimit, setpriority_process, setrlimit};
 use tracer::integrator::Path;
-use tracer::kronecker::Stratified;
-use tracer::profile::{Paper, Precise, Profile};
+use tracer::profile::Profile;
 use tracer::scene::All;
 use wire::{Boot, Command, MAX_PAYLOAD, Name, ToCore};
 
 use super::{Fleet, FleetError, Patience, Policy, RUNNING};
-use crate::firmware::arithmetic::{Arithmetic, Sampler};
+use crate::firmware::arithmetic::{Arithmetic, Sampler, with_profile};
 use crate::platform::wait;
 use crate::scene::Blob;
 
@@ -150,12 +149,7 @@ fn run(block: &[u8], kind: (Arithmetic, Sampler), end: Arc<End>) -> Result<Outco
     let boot = Boot::decode(block.bytes()).map_err(|error| format!("its boot block: {error}"))?;
     let network = Loopback::open(&boot, end).map_err(|error| format!("its socket: {error}"))?;
     let clock = HostClock(Instant::now());
-    let outcome: Result<Outcome, Fault> = match kind {
-        (Arithmetic::Paper, Sampler::Independent) => work::<Paper>(&boot, network, clock),
-        (Arithmetic::Paper, Sampler::Kronecker) => work::<Stratified<Paper>>(&boot, network, clock),
-        (Arithmetic::Precise, Sampler::Independent) => work::<Precise>(&boot, network, clock),
-        (Arithmetic::Precise, Sampler::Kronecker) => work::<Stratified<Precise>>(&boot, network, clock),
-    };
+    let outcome = with_profile!(kind.0, kind.1, P => work::<P>(&boot, network, clock));
     outcome.map_err(|fault| fault.to_string())
 }
 

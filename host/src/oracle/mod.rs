@@ -6,6 +6,7 @@ pub mod direct;
 pub mod divergence;
 pub mod equivalence;
 pub mod lockstep;
+mod moments;
 pub mod noise;
 pub mod reference;
 pub mod shortcuts;

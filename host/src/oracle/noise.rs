@@ -8,12 +8,12 @@ use fixedmath::U48F16;
 use rayon::prelude::*;
 use tracer::camera::Camera;
 use tracer::integrator::{Integrator as _, Path};
-use tracer::kronecker::Stratified;
-use tracer::profile::{Paper, Precise, Profile};
+use tracer::profile::Profile;
 use tracer::scene::All;
 use tracer::unit::{Plan, SPAN, render};
 
-use crate::firmware::arithmetic::{Arithmetic, Sampler};
+use super::moments::Moments;
+use crate::firmware::arithmetic::{Arithmetic, Sampler, with_profile};
 use crate::scene::CompiledScene;
 
 /// The fewest units of a pixel that say anything.
@@ -67,12 +67,7 @@ pub fn noise(
     if plan.passes() < FEWEST_UNITS {
         return None;
     }
-    Some(match (profile, sampler) {
-        (Arithmetic::Paper, Sampler::Independent) => of::<Paper>(compiled, plan, progress),
-        (Arithmetic::Paper, Sampler::Kronecker) => of::<Stratified<Paper>>(compiled, plan, progress),
-        (Arithmetic::Precise, Sampler::Independent) => of::<Precise>(compiled, plan, progress),
-        (Arithmetic::Precise, Sampler::Kronecker) => of::<Stratified<Precise>>(compiled, plan, progress),
-    })
+    Some(with_profile!(profile, sampler, P => of::<P>(compiled, plan, progress)))
 }
 
 fn of<P: Profile>(compiled: &CompiledScene, plan: &Plan, progress: impl Fn(u64) + Sync) -> Noise {
@@ -82,22 +77,22 @@ fn of<P: Profile>(compiled: &CompiledScene, plan: &Plan, progress: impl Fn(u64) 
     let spans: Vec<Vec<f64>> = (0..plan.spans())
         .into_par_iter()
         .map(|span| {
-            let mut pixels = [[Moments::default(); 3]; SPAN];
+            let mut pixels = [Moments::default(); SPAN];
             let mut extent = plan.extent(span);
             for pass in 0..plan.passes() {
                 let id = pass * plan.spans() + span;
                 extent = plan.extent(id);
                 let mut sums = [[U48F16::ZERO; 3]; SPAN];
                 render(&path, &scene, &camera, plan, id, &mut sums);
-                for (moments, sum) in pixels.as_flattened_mut().iter_mut().zip(sums.as_flattened()) {
-                    moments.add(sum.to_num::<f64>() * unit / f64::from(extent.samples));
+                for (moments, sums) in pixels.iter_mut().zip(sums) {
+                    moments.add(sums.map(|sum| sum.to_num::<f64>() * unit / f64::from(extent.samples)));
                 }
                 progress(u64::from(extent.pixels) * u64::from(extent.samples));
             }
             let samples = f64::from(plan.samples_per_unit);
             pixels[..usize::from(extent.pixels)]
                 .iter()
-                .map(|channels| samples * channels.iter().map(Moments::variance).sum::<f64>() / 3.0)
+                .map(|pixel| samples * [0, 1, 2].map(|c| pixel.variance(c)).iter().sum::<f64>() / 3.0)
                 .collect()
         })
         .collect();
@@ -106,32 +101,12 @@ fn of<P: Profile>(compiled: &CompiledScene, plan: &Plan, progress: impl Fn(u64) 
     }
 }
 
-/// Running mean and sum of squared deviations (Welford's).
-#[derive(Clone, Copy, Default)]
-struct Moments {
-    count: f64,
-    mean: f64,
-    squares: f64,
-}
-
-impl Moments {
-    fn add(&mut self, value: f64) {
-        self.count += 1.0;
-        let before = value - self.mean;
-        self.mean += before / self.count;
-        self.squares += before * (value - self.mean);
-    }
-
-    fn variance(&self) -> f64 {
-        self.squares / (self.count - 1.0)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::oracle::lockstep;
     use crate::scene::{Integrator, Scene, compile};
+    use tracer::profile::Precise;
     use tracer::unit::Termination;
 
     fn plan(spp: u32) -> Plan {

@@ -6,8 +6,8 @@ use std::sync::atomic::AtomicBool;
 use clap::Parser;
 use tracer::profile::{Paper, Precise};
 
-use super::part::plan;
-use super::{Effort, Error, Findings, Part, Table, hard};
+use super::part::{HARD_SCENES, plan, scene_files};
+use super::{Effort, Error, Findings, Part, Table};
 use crate::firmware::arithmetic::Arithmetic;
 use crate::firmware::board::Board;
 use crate::oracle::direct;
@@ -32,7 +32,7 @@ struct Flags {
 }
 
 fn measure(effort: &Effort) -> Result<Findings, Error> {
-    let mut files = hard::files()?;
+    let mut files = scene_files(&[HARD_SCENES])?;
     if effort.is_quick() {
         files.truncate(2);
     }

@@ -2,12 +2,11 @@
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::PathBuf;
 
 use serde::Deserialize;
 use tracer::profile::{Paper, Precise};
 
-use super::part::{SURE, plan, reference};
+use super::part::{HARD_SCENES, SURE, plan, reference, scene_files};
 use super::sheet::Panel;
 use super::table::figure;
 use super::{Effort, Error, Findings, Part, Sheet, Table};
@@ -27,7 +26,6 @@ pub(super) const PART: Part = Part {
     measure,
 };
 
-const FOLDER: &str = "scenes/hard";
 const SIZE: [u16; 2] = [48, 32];
 /// Samples a pixel; `paper` takes a quarter.
 const SPP: u64 = 4096;
@@ -61,24 +59,11 @@ struct Expected {
     standard_error: f64,
 }
 
-/// The hard scenes' files, in the order of their names.
-pub(super) fn files() -> Result<Vec<PathBuf>, Error> {
-    let mut files = Vec::new();
-    for entry in fs::read_dir(workspace::file(FOLDER)?)? {
-        let path = entry?.path();
-        if path.extension().is_some_and(|extension| extension == "toml") {
-            files.push(path);
-        }
-    }
-    files.sort();
-    Ok(files)
-}
-
 fn measure(effort: &Effort) -> Result<Findings, Error> {
     let spp = effort.of(SPP).next_multiple_of(16) as u32;
-    let expected = fs::read_to_string(workspace::file(FOLDER)?.join("expected.json"))?;
+    let expected = fs::read_to_string(workspace::file(HARD_SCENES)?.join("expected.json"))?;
     let expected: BTreeMap<String, Expected> = serde_json::from_str(&expected)?;
-    let files = files()?;
+    let files = scene_files(&[HARD_SCENES])?;
     let scenes = files.len();
     let pixels = u64::from(SIZE[0]) * u64::from(SIZE[1]);
     effort.expect(scenes as u64 * pixels * u64::from(2 * spp + spp / 4));
@@ -281,7 +266,7 @@ mod tests {
     #[test]
     fn planted_faults_are_found() {
         let effort = Effort::new(100, ProgressBar::hidden());
-        let file = workspace::file(FOLDER).unwrap().join("furnace-diffuse.toml");
+        let file = workspace::file(HARD_SCENES).unwrap().join("furnace-diffuse.toml");
         let mut found = Found::of(&effort, &Scene::load(&file).unwrap(), 16).unwrap();
         let faults = |found: &Found, mean: f64, scenes| {
             let expected = Expected {
@@ -303,10 +288,10 @@ mod tests {
 
     #[test]
     fn something_is_expected_of_every_scene() {
-        let folder = workspace::file(FOLDER).unwrap();
+        let folder = workspace::file(HARD_SCENES).unwrap();
         let expected = fs::read_to_string(folder.join("expected.json")).unwrap();
         let expected: BTreeMap<String, Expected> = serde_json::from_str(&expected).unwrap();
-        let names = files()
+        let names = scene_files(&[HARD_SCENES])
             .unwrap()
             .into_iter()
             .map(|file| file.file_stem().unwrap().to_str().unwrap().to_owned());

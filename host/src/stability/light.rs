@@ -1,15 +1,11 @@
 //! Whether looking for light finds what there is: every scene of the repository, by paths that look for it, beside the reference.
 
-use std::fs;
-use std::path::PathBuf;
-
-use super::part::{SURE, plan, reference};
+use super::part::{SCENE_FOLDERS, SURE, plan, reference, scene_files};
 use super::table::figure;
 use super::{Effort, Error, Findings, Part, Table};
 use crate::firmware::arithmetic::{Arithmetic, Sampler};
 use crate::oracle::compare::{Comparison, compare, sidak_threshold};
 use crate::oracle::lockstep;
-use crate::platform::workspace;
 use crate::scene::{Integrator, Scene, compile};
 
 /// The part.
@@ -19,7 +15,6 @@ pub(super) const PART: Part = Part {
     measure,
 };
 
-const FOLDERS: [&str; 4] = ["scenes", "scenes/extra", "scenes/hard", "tests/scenes"];
 const SIZE: [u16; 2] = [32, 24];
 /// Samples a pixel of the pilot, and the most.
 const PILOT: u64 = 1024;
@@ -34,23 +29,8 @@ const UNITS: &str = "Bias: of `precise` with `--integrator next-event --sampler 
     together. Emitters: how many caps and balls are looked for.";
 const HEAD: [&str; 6] = ["scene", "emitters", "samples", "bias, %", "arithmetic, %", "z"];
 
-/// All scenes' files.
-fn files() -> Result<Vec<PathBuf>, Error> {
-    let mut files = Vec::new();
-    for folder in FOLDERS {
-        for entry in fs::read_dir(workspace::file(folder)?)? {
-            let path = entry?.path();
-            if path.extension().is_some_and(|extension| extension == "toml") {
-                files.push(path);
-            }
-        }
-    }
-    files.sort();
-    Ok(files)
-}
-
 fn measure(effort: &Effort) -> Result<Findings, Error> {
-    let files = files()?;
+    let files = scene_files(&SCENE_FOLDERS)?;
     let mut table = Table::new("Looking for light", UNITS, &HEAD);
     let mut faults = Vec::new();
     for file in &files {

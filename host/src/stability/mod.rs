@@ -19,7 +19,7 @@ mod sheet;
 mod table;
 mod vast;
 
-pub use part::{Effort, Error, Findings, Part};
+pub use part::{Effort, Error, Findings, Part, SCENE_FOLDERS, scene_files};
 pub use plot::Plot;
 pub use sheet::Sheet;
 pub use table::Table;

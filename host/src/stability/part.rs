@@ -1,5 +1,7 @@
 //! What a part is given, and what it gives.
 
+use std::fs;
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use indicatif::ProgressBar;
@@ -9,6 +11,7 @@ use tracer::unit::{Plan, Termination};
 use super::{Plot, Sheet, Table};
 use crate::firmware::arithmetic::Arithmetic;
 use crate::oracle::reference::{self, Rendered};
+use crate::platform::workspace;
 use crate::scene::{CompiledScene, Scene};
 
 /// Why a part could not be measured.
@@ -75,6 +78,26 @@ pub struct Findings {
     pub sheets: Vec<Sheet>,
     /// What should have held and did not, a line each.
     pub faults: Vec<String>,
+}
+
+/// Where those scenes are that are hard for the arithmetic.
+pub(super) const HARD_SCENES: &str = "scenes/hard";
+/// Where the repository has scenes.
+pub const SCENE_FOLDERS: [&str; 4] = ["scenes", "scenes/extra", HARD_SCENES, "tests/scenes"];
+
+/// The scenes' files of these folders, in the order of their names.
+pub fn scene_files(folders: &[&str]) -> Result<Vec<PathBuf>, Error> {
+    let mut files = Vec::new();
+    for folder in folders {
+        for entry in fs::read_dir(workspace::file(folder)?)? {
+            let path = entry?.path();
+            if path.extension().is_some_and(|extension| extension == "toml") {
+                files.push(path);
+            }
+        }
+    }
+    files.sort();
+    Ok(files)
 }
 
 /// How `arithmetic` renders a picture of `width` by `height` unless users say otherwise.

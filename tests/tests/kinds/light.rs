@@ -2,27 +2,16 @@
 //!
 //! Seeds are fixed, so each of these has one outcome. The bounds are what sampling noise allows, not what was found.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use host::bench::reference::plain::Plain;
 use host::image::picture::Estimate;
 use host::oracle::compare::compare;
 use host::oracle::reference::{Job, Rendered, Termination};
 use host::scene::{Integrator, Scene};
+use host::stability::{SCENE_FOLDERS, scene_files};
 use tracer::profile::Precise;
 use whole_system::{estimate_by, gxx, plan, reference, repository};
-
-/// All scene files of the repository.
-fn scenes() -> Vec<PathBuf> {
-    let folders = ["scenes", "scenes/hard", "scenes/extra", "tests/scenes"].map(repository);
-    let files = folders
-        .iter()
-        .flat_map(|folder| std::fs::read_dir(folder).expect("it is there"));
-    let mut files: Vec<PathBuf> = files.map(|entry| entry.expect("it can be read").path()).collect();
-    files.retain(|file| file.extension().is_some_and(|extension| extension == "toml"));
-    files.sort();
-    files
-}
 
 /// One of all scenes may be off by so many standard errors with a chance of 0.2 %.
 const SURE: f64 = 4.0;
@@ -46,7 +35,7 @@ fn load(file: &Path) -> Scene {
 
 #[test]
 fn all_scenes_are_as_bright_as_they_should() {
-    for file in scenes() {
+    for file in scene_files(&SCENE_FOLDERS).unwrap() {
         let scene = load(&file);
         let found = estimate_by::<Precise>(&scene, &plan::<Precise>(16, 12, 64), Integrator::NextEvent);
         is_as_bright(

@@ -13,15 +13,14 @@ use fixedmath::I16F16;
 use rayon::prelude::*;
 use tracer::camera::Camera;
 use tracer::integrator::{Integrator, Path};
-use tracer::kronecker::Stratified;
 use tracer::material::RadianceNumbers;
-use tracer::profile::{Paper, Precise, Profile};
+use tracer::profile::Profile;
 use tracer::random::Random;
 use tracer::scene::All;
 use tracer::unit::Plan;
 
 use self::samples::samples;
-use crate::firmware::arithmetic::{Arithmetic, Sampler};
+use crate::firmware::arithmetic::{Arithmetic, Sampler, with_profile};
 use crate::image::picture::{Estimate, Picture};
 use crate::scene::CompiledScene;
 
@@ -82,12 +81,7 @@ pub fn render_as(
     plan: &Plan,
     progress: impl Fn(u64) + Sync,
 ) -> Paired {
-    match (profile, sampler) {
-        (Arithmetic::Paper, Sampler::Independent) => render::<Paper>(compiled, plan, progress),
-        (Arithmetic::Paper, Sampler::Kronecker) => render::<Stratified<Paper>>(compiled, plan, progress),
-        (Arithmetic::Precise, Sampler::Independent) => render::<Precise>(compiled, plan, progress),
-        (Arithmetic::Precise, Sampler::Kronecker) => render::<Stratified<Precise>>(compiled, plan, progress),
-    }
+    with_profile!(profile, sampler, P => render::<P>(compiled, plan, progress))
 }
 
 /// The same beside doubles of another epsilon than `plan`'s.

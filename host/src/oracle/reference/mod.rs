@@ -25,6 +25,7 @@ use rayon::prelude::*;
 use sampling::Batch;
 use vector::Vector;
 
+use super::moments::Moments;
 use crate::image::picture::{Estimate, Picture};
 use crate::scene::{Integrator, Scene};
 
@@ -224,29 +225,6 @@ fn pixel(
         mean,
         variance,
         plain_variance,
-    }
-}
-
-/// Running mean and sum of squared deviations (Welford's).
-#[derive(Clone, Copy, Default)]
-struct Moments {
-    count: f64,
-    mean: [f64; 3],
-    squares: [f64; 3],
-}
-
-impl Moments {
-    fn add(&mut self, sample: [f64; 3]) {
-        self.count += 1.0;
-        for ((mean, squares), value) in self.mean.iter_mut().zip(&mut self.squares).zip(sample) {
-            let before = value - *mean;
-            *mean += before / self.count;
-            *squares += before * (value - *mean);
-        }
-    }
-
-    fn variance_of_mean(&self, channel: usize) -> f64 {
-        self.squares[channel] / (self.count - 1.0) / self.count
     }
 }
 
