@@ -98,6 +98,12 @@ impl Capabilities {
         Self(self.0 | 1 << capability as u32)
     }
 
+    /// This set, and one more on a condition.
+    #[must_use]
+    pub const fn with_if(self, is_wanted: bool, capability: Capability) -> Self {
+        if is_wanted { self.with(capability) } else { self }
+    }
+
     /// This set without one.
     #[must_use]
     pub const fn without(self, capability: Capability) -> Self {

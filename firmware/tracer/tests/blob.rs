@@ -10,7 +10,7 @@ use tracer::aggregate::Room;
 use tracer::camera::CameraRecord;
 use tracer::geometry::sphere::{SolidSphere, SphereRecord, VastSphere};
 use tracer::geometry::{Grid, PrimitiveId, PrimitiveSet};
-use tracer::light::{BallLight, CapLight, Magnitude};
+use tracer::light::{BallLight, CapLight, Emitter, Magnitude};
 use tracer::material::{Kind, MaterialId, MaterialRecord};
 use tracer::scene::{BlobError, Capabilities, Capability, Header, MAX_BYTES, MAX_PRIMITIVES, Scene};
 
@@ -208,11 +208,24 @@ fn emitters_are_of_a_kind_and_a_material_that_there_is() {
             ..light
         },
         BallLight {
-            material: MaterialId::new(1),
+            emitter: Emitter {
+                material: MaterialId::new(1),
+                ..light.emitter
+            },
             ..light
         },
         BallLight {
-            is_clipped: 2,
+            emitter: Emitter {
+                flags: Emitter::HOLLOW,
+                ..light.emitter
+            },
+            ..light
+        },
+        BallLight {
+            emitter: Emitter {
+                flags: 4,
+                ..light.emitter
+            },
             ..light
         },
     ] {

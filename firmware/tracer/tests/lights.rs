@@ -7,7 +7,7 @@ use proptest::prelude::*;
 use tracer::arithmetic::{Formats, Mixed};
 use tracer::geometry::sphere::SphereNumbers;
 use tracer::geometry::{MaterialId, PrimitiveId};
-use tracer::light::{CapLight, LEAST_SHARE, LightNumbers, MOST_DOUBLINGS, Magnitude};
+use tracer::light::{CapLight, Emitter, LEAST_SHARE, LightNumbers, MOST_DOUBLINGS, Magnitude};
 
 type Double = Floating<f64>;
 
@@ -37,10 +37,12 @@ fn cap(radius: f64, height: f64) -> CapLight {
         down: [along, along, length(radius * height)],
         height: U0F32::saturating_from_num(height),
         reach: magnitude(2.0 * height * radius),
-        threshold: U0F32::MAX,
-        primitive: PrimitiveId::new(0),
-        material: MaterialId::new(0),
-        flags: 0,
+        emitter: Emitter {
+            threshold: U0F32::MAX,
+            primitive: PrimitiveId::new(0),
+            material: MaterialId::new(0),
+            flags: 0,
+        },
         reserved: 0,
     }
 }

@@ -159,20 +159,14 @@ impl Job {
 
     /// What scene, integrator, sampler and the end of paths need.
     fn needs(&self) -> Capabilities {
-        let wanted = [
-            (
-                self.options.termination.0 == Termination::Roulette,
+        let options = &self.options;
+        self.compiled
+            .needs
+            .with_if(
+                options.termination.0 == Termination::Roulette,
                 Capability::Roulette,
-            ),
-            (
-                self.options.sampler() == Sampler::Kronecker,
-                Capability::Kronecker,
-            ),
-        ];
-        let wanted = wanted.into_iter().filter(|(is_wanted, _)| *is_wanted);
-        wanted.fold(self.compiled.needs, |needs, (_, capability)| {
-            needs.with(capability)
-        })
+            )
+            .with_if(options.sampler() == Sampler::Kronecker, Capability::Kronecker)
     }
 
     /// Collects from cores that somebody else starts.

@@ -12,7 +12,7 @@ use std::f64::consts::PI;
 use fixedmath::U0F32;
 use tracer::geometry::PrimitiveId;
 use tracer::geometry::sphere::SphereRecord;
-use tracer::light::{BallLight, CapLight, Magnitude};
+use tracer::light::{BallLight, CapLight, Emitter, Magnitude};
 use tracer::scene::{Capabilities, Capability};
 
 use super::fixed::{q0_32, q16};
@@ -82,22 +82,19 @@ impl Emitters {
     }
 
     fn are_clipped(&self) -> bool {
-        self.caps.iter().any(|cap| cap.flags & CapLight::CLIPPED != 0)
-            || self.balls.iter().any(|ball| ball.is_clipped != 0)
+        let caps = self.caps.iter().map(|cap| &cap.emitter);
+        let balls = self.balls.iter().map(|ball| &ball.emitter);
+        caps.chain(balls).any(Emitter::is_clipped)
     }
 
     /// What an image must be capable of to look for them.
     pub(super) fn needs(&self) -> Capabilities {
-        let wanted = [
-            (self.caps.len() + self.balls.len() > 0, Capability::Lights),
-            (self.caps.len() + self.balls.len() > 1, Capability::ManyLights),
-            (!self.balls.is_empty(), Capability::BallLights),
-            (self.are_clipped(), Capability::ClippedLights),
-        ];
-        let wanted = wanted.into_iter().filter(|(is_wanted, _)| *is_wanted);
-        wanted.fold(Capabilities::NONE, |needs, (_, capability)| {
-            needs.with(capability)
-        })
+        let count = self.caps.len() + self.balls.len();
+        Capabilities::NONE
+            .with_if(count > 0, Capability::Lights)
+            .with_if(count > 1, Capability::ManyLights)
+            .with_if(!self.balls.is_empty(), Capability::BallLights)
+            .with_if(self.are_clipped(), Capability::ClippedLights)
     }
 }
 
@@ -158,6 +155,16 @@ impl Chance {
 }
 
 impl Found<'_> {
+    fn emitter(&self, chance: &Chance) -> Emitter {
+        let flag = |is_set: bool, flag: u16| if is_set { flag } else { 0 };
+        Emitter {
+            threshold: chance.threshold,
+            primitive: PrimitiveId::new(self.index),
+            material: self.record.material,
+            flags: flag(self.is_hollow, Emitter::HOLLOW) | flag(self.seen.is_clipped, Emitter::CLIPPED),
+        }
+    }
+
     fn cap(&self, cap: Cap, chance: &Chance) -> Option<CapLight> {
         let radius = self.radius;
         let centre = self.record.centre.map(|c| c.to_num::<f64>());
@@ -171,10 +178,6 @@ impl Found<'_> {
         if area == 0.0 {
             return None;
         }
-        let flags = [
-            (self.is_hollow, CapLight::HOLLOW),
-            (self.seen.is_clipped, CapLight::CLIPPED),
-        ];
         Some(CapLight {
             centre: self.record.centre,
             pole: pole.map(q16),
@@ -182,14 +185,7 @@ impl Found<'_> {
             down: cap.axis.map(|c| q16(c * radius * cap.height)),
             height: q0_32(cap.height),
             reach: magnitude(area / radius / chance.probability()?),
-            threshold: chance.threshold,
-            primitive: PrimitiveId::new(self.index),
-            material: self.record.material,
-            flags: flags
-                .iter()
-                .filter(|(is_set, _)| *is_set)
-                .map(|(_, flag)| flag)
-                .sum(),
+            emitter: self.emitter(chance),
             reserved: 0,
         })
     }
@@ -199,10 +195,7 @@ impl Found<'_> {
             centre: self.record.centre,
             radius: self.record.radius,
             reach: magnitude(2.0 / chance.probability()?),
-            threshold: chance.threshold,
-            primitive: PrimitiveId::new(self.index),
-            material: self.record.material,
-            is_clipped: self.seen.is_clipped.into(),
+            emitter: self.emitter(chance),
             reserved: 0,
         })
     }

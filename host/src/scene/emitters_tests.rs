@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use tracer::light::{CapLight, Lights};
+use tracer::light::{CapLight, Emitter, Lights};
 use tracer::scene::Capability;
 
 use crate::scene::{CompiledScene, Integrator, Scene, compile};
@@ -56,7 +56,7 @@ fn of_the_cornell_light_the_cap_below_the_ceiling_is_looked_for() {
         "{height}"
     );
     assert!((reach - 2.0 * 600.0 * height).abs() < 1e-3 * reach, "{reach}");
-    assert_eq!(cap.flags, 0, "no other wall hides any of it");
+    assert_eq!(cap.emitter.flags, 0, "no other wall hides any of it");
     let plain = compile(&scene, 64, 48, Integrator::Path);
     assert!(!plain.needs.has(Capability::Lights) && plain.view().lights.caps.is_empty());
 }
@@ -75,11 +75,11 @@ fn a_lamp_in_the_wall_is_a_cap_or_a_ball() {
     let lamp = |place: f64| compiled(&[room(), sphere("lamp", [0.0, place, 0.0], 1.0, LAMP)]);
     let sunk = lamp(10.3);
     assert_eq!(counts(&sunk), (1, 0));
-    assert_eq!(sunk.view().lights.caps[0].flags, 0);
+    assert_eq!(sunk.view().lights.caps[0].emitter.flags, 0);
     let hangs = lamp(9.5);
     assert_eq!(counts(&hangs), (0, 1));
-    assert_eq!(hangs.view().lights.balls[0].is_clipped, 1);
-    assert_eq!(lamp(8.9).view().lights.balls[0].is_clipped, 0);
+    assert_eq!(hangs.view().lights.balls[0].emitter.flags, Emitter::CLIPPED);
+    assert_eq!(lamp(8.9).view().lights.balls[0].emitter.flags, 0);
     // It touches the wall from within, and from without.
     assert_eq!(counts(&lamp(9.0)), (0, 1));
 }
@@ -130,7 +130,7 @@ fn a_hollow_emitter_that_bulges_into_another_room_is_a_cap() {
     );
     let compiled = compiled(&[sphere("room", [0.0; 3], 3.0, ROOM), window]);
     assert_eq!(counts(&compiled), (1, 0));
-    assert_eq!(compiled.view().lights.caps[0].flags, CapLight::HOLLOW);
+    assert_eq!(compiled.view().lights.caps[0].emitter.flags, Emitter::HOLLOW);
 }
 
 /// A lamp in a corner: each wall leaves half of it, and the cap around what both leave is cut by them.
@@ -145,7 +145,7 @@ fn a_lamp_in_a_corner_is_cut_by_both_walls() {
     ]);
     assert_eq!(counts(&compiled), (1, 0));
     let cap = compiled.view().lights.caps[0];
-    assert_eq!(cap.flags, CapLight::CLIPPED);
+    assert_eq!(cap.emitter.flags, Emitter::CLIPPED);
     // A quarter of a ball reaches a right angle from its middle; the walls bend, and leave a bit less.
     assert!((0.9..1.0).contains(&number(&cap).1), "{cap:?}");
 }
@@ -170,12 +170,15 @@ fn hundreds_of_emitters_share_the_chances() {
     let mut sum = 0.0;
     for (light, weight) in compiled.view().lights.balls.iter().zip(&weights) {
         sum += weight;
-        assert!((f64::from(light.threshold.to_bits()) / 2f64.powi(32) - sum / total).abs() < 1e-9);
+        assert!((f64::from(light.emitter.threshold.to_bits()) / 2f64.powi(32) - sum / total).abs() < 1e-9);
         let (mantissa, exponent) = light.reach.parts();
         let chance = 2.0 / (f64::from(mantissa) * 2f64.powi(exponent));
         assert!((chance - weight / total).abs() < 1e-9);
     }
-    assert_eq!(compiled.view().lights.balls[199].threshold.to_bits(), u32::MAX);
+    assert_eq!(
+        compiled.view().lights.balls[199].emitter.threshold.to_bits(),
+        u32::MAX
+    );
 }
 
 /// Light that is next to nothing beside the rest is left to paths, which it would cost more than it gives.
@@ -193,6 +196,9 @@ fn more_caps_than_there_is_room_for_are_the_strongest() {
     let (caps, balls) = counts(&compiled);
     assert_eq!((caps, balls), (116, 0));
     let lights = compiled.view().lights.caps;
-    let of: Vec<usize> = lights.iter().map(|light| light.primitive.index()).collect();
+    let of: Vec<usize> = lights
+        .iter()
+        .map(|light| light.emitter.primitive.index())
+        .collect();
     assert!(of.iter().all(|&index| index > 120), "the brighter half: {of:?}");
 }

@@ -2,11 +2,11 @@
 //! and C. Wang, "Monte Carlo techniques for direct lighting calculations", 1996).
 
 use bytemuck::{Pod, Zeroable};
-use fixedmath::{I16F16, U0F32};
+use fixedmath::I16F16;
 
-use super::{Aim, Light, LightNumbers, Magnitude, Place, drawn};
+use super::{Aim, Emitter, Light, LightNumbers, Magnitude, Place, drawn};
 use crate::arithmetic::vector::sub;
-use crate::geometry::{MaterialId, PrimitiveId, Ray};
+use crate::geometry::Ray;
 use crate::random::Random;
 
 /// A ball. Ten words.
@@ -19,14 +19,8 @@ pub struct BallLight {
     pub radius: I16F16,
     /// 2 over the chance to be chosen: what makes the solid angle over pi of a cone's height.
     pub reach: Magnitude,
-    /// The chance that it or one before it is chosen; of the last all ones.
-    pub threshold: U0F32,
-    /// Whose surface it is.
-    pub primitive: PrimitiveId,
-    /// What it is made of.
-    pub material: MaterialId,
-    /// Whether hollow shapes may hide parts of it: 1, or 0.
-    pub is_clipped: u16,
+    /// What it has in common with others.
+    pub emitter: Emitter,
     /// Zero.
     pub reserved: u32,
 }
@@ -35,7 +29,7 @@ const _: () = assert!(size_of::<BallLight>() == 40);
 
 impl BallLight {
     pub(super) fn is_sound(&self) -> bool {
-        self.radius > I16F16::ZERO && self.reach.is_sound() && self.is_clipped <= 1 && self.reserved == 0
+        self.radius > I16F16::ZERO && self.reach.is_sound() && !self.emitter.is_hollow() && self.reserved == 0
     }
 
     /// Kept in one place: it is long.
@@ -53,20 +47,9 @@ impl BallLight {
 }
 
 impl Light for BallLight {
-    fn threshold(&self) -> U0F32 {
-        self.threshold
-    }
-
-    fn primitive(&self) -> PrimitiveId {
-        self.primitive
-    }
-
-    fn material(&self) -> MaterialId {
-        self.material
-    }
-
-    fn is_clipped(&self) -> bool {
-        self.is_clipped != 0
+    #[inline]
+    fn emitter(&self) -> &Emitter {
+        &self.emitter
     }
 
     fn aim<N: LightNumbers>(&self, place: &Place<N>, random: &mut impl Random) -> Option<Aim<N>> {

@@ -3,9 +3,9 @@
 use bytemuck::{Pod, Zeroable};
 use fixedmath::{I16F16, U0F32};
 
-use super::{Aim, Light, LightNumbers, Magnitude, Place, drawn};
+use super::{Aim, Emitter, Light, LightNumbers, Magnitude, Place, drawn};
 use crate::arithmetic::vector::sub;
-use crate::geometry::{MaterialId, PrimitiveId, Ray};
+use crate::geometry::Ray;
 use crate::random::Random;
 
 /// A cap of a sphere, at most half of it. Twenty-two words.
@@ -27,14 +27,8 @@ pub struct CapLight {
     pub height: U0F32,
     /// The area over pi, the radius, and the chance to be chosen.
     pub reach: Magnitude,
-    /// The chance that it or one before it is chosen; of the last all ones.
-    pub threshold: U0F32,
-    /// Whose surface it is.
-    pub primitive: PrimitiveId,
-    /// What it is made of.
-    pub material: MaterialId,
-    /// Its [`CapLight::HOLLOW`] and [`CapLight::CLIPPED`].
-    pub flags: u16,
+    /// What it has in common with others.
+    pub emitter: Emitter,
     /// Zero.
     pub reserved: u32,
 }
@@ -42,13 +36,8 @@ pub struct CapLight {
 const _: () = assert!(size_of::<CapLight>() == 88);
 
 impl CapLight {
-    /// The sphere is hollow: its light is on the inside.
-    pub const HOLLOW: u16 = 1;
-    /// Hollow shapes may hide parts of it.
-    pub const CLIPPED: u16 = 2;
-
     pub(super) fn is_sound(&self) -> bool {
-        self.flags <= Self::HOLLOW | Self::CLIPPED && self.reach.is_sound() && self.reserved == 0
+        self.reach.is_sound() && self.reserved == 0
     }
 
     /// How far the surface is turned towards where `direction` comes from: the cosine there, times the radius.
@@ -61,29 +50,18 @@ impl CapLight {
     ) -> N::Length {
         let to_centre = sub(self.centre.map(N::length), from);
         let beyond = N::length_of(N::project(to_centre, direction)) - distance;
-        if self.flags & Self::HOLLOW == 0 {
-            beyond
-        } else {
+        if self.emitter.is_hollow() {
             N::NOTHING - beyond
+        } else {
+            beyond
         }
     }
 }
 
 impl Light for CapLight {
-    fn threshold(&self) -> U0F32 {
-        self.threshold
-    }
-
-    fn primitive(&self) -> PrimitiveId {
-        self.primitive
-    }
-
-    fn material(&self) -> MaterialId {
-        self.material
-    }
-
-    fn is_clipped(&self) -> bool {
-        self.flags & Self::CLIPPED != 0
+    #[inline]
+    fn emitter(&self) -> &Emitter {
+        &self.emitter
     }
 
     #[inline]

@@ -19,6 +19,7 @@ pub use cap::CapLight;
 pub use magnitude::Magnitude;
 pub use numbers::{LEAST_SHARE, LightNumbers, MOST_DOUBLINGS};
 
+use bytemuck::{Pod, Zeroable};
 use fixedmath::U0F32;
 
 use crate::aggregate::Sight;
@@ -39,16 +40,47 @@ pub struct Lights<'s> {
     pub balls: &'s [BallLight],
 }
 
-/// What all kinds of emitters have in common: a record, and how it is looked for.
-trait Light {
+/// What all kinds of emitters have in their records. Three words.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Emitter {
     /// The chance that it or one before it is chosen; of the last all ones.
-    fn threshold(&self) -> U0F32;
+    pub threshold: U0F32,
     /// Whose surface it is.
-    fn primitive(&self) -> PrimitiveId;
+    pub primitive: PrimitiveId,
     /// What it is made of.
-    fn material(&self) -> MaterialId;
+    pub material: MaterialId,
+    /// Its [`Emitter::HOLLOW`] and [`Emitter::CLIPPED`].
+    pub flags: u16,
+}
+
+impl Emitter {
+    /// The sphere is hollow: its light is on the inside.
+    pub const HOLLOW: u16 = 1;
     /// Hollow shapes may hide parts of it.
-    fn is_clipped(&self) -> bool;
+    pub const CLIPPED: u16 = 2;
+
+    /// Whether it is hollow.
+    #[inline]
+    pub fn is_hollow(&self) -> bool {
+        self.flags & Self::HOLLOW != 0
+    }
+
+    /// Whether hollow shapes may hide parts of it.
+    #[inline]
+    pub fn is_clipped(&self) -> bool {
+        self.flags & Self::CLIPPED != 0
+    }
+
+    fn is_sound(&self, materials: usize) -> bool {
+        self.material.index() < materials && self.flags <= Self::HOLLOW | Self::CLIPPED
+    }
+}
+
+/// A kind of emitter: how it is looked for.
+trait Light {
+    /// What it has in common with others.
+    fn emitter(&self) -> &Emitter;
 
     /// A direction in which it is, drawn from so that what can be seen of it is found evenly.
     fn aim<N: LightNumbers>(&self, place: &Place<N>, random: &mut impl Random) -> Option<Aim<N>>;
@@ -105,7 +137,7 @@ impl<'s> Lights<'s> {
         fn all<L: Light>(lights: &[L], materials: usize, is_sound: fn(&L) -> bool) -> bool {
             lights
                 .iter()
-                .all(|light| light.material().index() < materials && is_sound(light))
+                .all(|light| light.emitter().is_sound(materials) && is_sound(light))
         }
         let none = self.caps.is_empty() && self.balls.is_empty();
         (none || needs.has(Capability::Lights))
@@ -120,7 +152,12 @@ impl<'s> Lights<'s> {
 
     /// Whether hollow shapes may hide parts of any.
     fn has_clipped(&self) -> bool {
-        self.caps.iter().any(Light::is_clipped) || self.balls.iter().any(Light::is_clipped)
+        let mut emitters = self
+            .caps
+            .iter()
+            .map(Light::emitter)
+            .chain(self.balls.iter().map(Light::emitter));
+        emitters.any(Emitter::is_clipped)
     }
 
     /// A connection from a diffuse surface to an emitter, in proportion to what each may give.
@@ -175,11 +212,11 @@ fn chosen<L: Light, F: Needs>(lights: &[L], chance: U0F32) -> Option<&L> {
     if !F::NEEDS.has(Capability::ManyLights) {
         return lights.first();
     }
-    lights.get(lights.partition_point(|light| light.threshold() < chance))
+    lights.get(lights.partition_point(|light| light.emitter().threshold < chance))
 }
 
 fn light_of<L: Light>(lights: &[L], primitive: PrimitiveId) -> Option<&L> {
-    lights.iter().find(|light| light.primitive() == primitive)
+    lights.iter().find(|light| light.emitter().primitive == primitive)
 }
 
 #[inline]
@@ -203,10 +240,10 @@ fn connect<P: Profile>(
                 normal: interaction.normal,
             },
             t_max: aim.distance,
-            target: light.primitive(),
-            is_within: !light.is_clipped(),
+            target: light.emitter().primitive,
+            is_within: !light.emitter().is_clipped(),
         },
-        material: light.material(),
+        material: light.emitter().material,
         share,
     })
 }
