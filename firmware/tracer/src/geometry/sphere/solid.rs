@@ -60,28 +60,6 @@ impl Shape for SolidSphere {
         None
     }
 
-    /// Kept apart from what happens more often: most sights are clear at a rough look.
-    #[inline]
-    fn any<P: Profile, F: Needs>(
-        &self,
-        ray: &Ray<P::Numbers>,
-        prepared: &Self::Prepared<P::Numbers>,
-        standing: Standing,
-        epsilon: Length<P>,
-        t_max: Length<P>,
-    ) -> bool {
-        let hit = if matches!(P::QUADRATIC, Quadratic::Textbook) {
-            self.sphere.textbook::<P>(ray, epsilon, t_max)
-        } else if !F::NEEDS.has(Capability::Coarse)
-            || P::Numbers::may_meet(&self.coarse, prepared.0, &prepared.1, t_max)
-        {
-            self.closely_apart::<P, F>(ray, standing, epsilon, t_max)
-        } else {
-            None
-        };
-        hit.is_some()
-    }
-
     #[inline]
     fn interaction<P: Profile, F: Needs>(
         &self,

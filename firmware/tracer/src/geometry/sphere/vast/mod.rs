@@ -135,7 +135,6 @@ impl VastSphere {
 
     /// Where a ray hits it, by [`Quadratic::Power`]: from above where it goes under, and from within a ball of glass where it
     /// comes up.
-    #[inline(never)]
     fn closely<P: Profile, F: Needs>(
         &self,
         ray: &Ray<P::Numbers>,
