@@ -20,7 +20,7 @@ fuzz_target!(|text: &str| {
         if scene.check_frame(width, height).is_err() {
             continue;
         }
-        let compiled = compile(&scene, width, height, Integrator::Path);
+        let compiled = compile(&scene, width, height, Integrator::NextEvent);
         let primitives = compiled.view().aggregate.primitives;
         primitives
             .hollow_spheres

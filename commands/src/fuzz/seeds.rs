@@ -65,7 +65,7 @@ fn seed(folder: &Path, target: &str, name: &str, bytes: &[u8]) -> anyhow::Result
 /// A scene as cores have it, alone and in its boot block.
 fn scene(folder: &Path, file: &Path) -> anyhow::Result<()> {
     let scene = Scene::load(file)?;
-    let compiled = compile(&scene, 64, 48, Integrator::Path);
+    let compiled = compile(&scene, 64, 48, Integrator::NextEvent);
     let (camera, blob) = (bytemuck::bytes_of(&compiled.camera), compiled.blob.bytes());
     seed(folder, "scene-blob", &scene.name, &[camera, blob].concat())?;
     let block = Boot {
