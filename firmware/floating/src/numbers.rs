@@ -359,6 +359,11 @@ impl<F: Float> LightNumbers for Floating<F> {
         (sine_squared < F::ONE).then(|| sine_squared / (F::ONE + (F::ONE - sine_squared).root()))
     }
 
+    fn stored_cone(spread: I2F30) -> F {
+        let spread = Self::unit(spread);
+        spread * spread * F::of(0.5)
+    }
+
     fn in_cone(height: F, value: U0F32) -> Option<[F; 3]> {
         let [x, y] = Self::on_disc(value)?;
         let below = height * (x * x + y * y);

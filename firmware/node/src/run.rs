@@ -4,7 +4,7 @@ use fixedmath::I16F16;
 use tracer::camera::{Camera, CameraRecord};
 use tracer::integrator::Integrator;
 use tracer::profile::Profile;
-use tracer::scene::Scene;
+use tracer::scene::{Capabilities, Scene};
 use tracer::unit::{Plan, Sums, Termination};
 use wire::{Boot, Name, boot};
 
@@ -26,13 +26,20 @@ pub fn run<P: Profile, I: Integrator<P>>(
     if boot.profile != Name::new(P::NAME) {
         return Err(Fault::Profile);
     }
-    let record = CameraRecord::of_bytes(boot.camera).ok_or(Fault::Scene)?;
-    let scene = Scene::view(boot.scene, I::CAPABILITIES)?.seen_from(record, I::CAPABILITIES)?;
+    let (scene, record) = scene(boot, I::CAPABILITIES)?;
     let plan = plan(boot);
     let (camera, integrator) = (Camera::new(record), I::new(&plan));
     let mut renderer =
         |unit, sums: &mut Sums| tracer::unit::render::<P>(&integrator, &scene, &camera, &plan, unit, sums);
     Worker::new(boot, plan, board, &mut renderer, network, clock)?.run(stack)
+}
+
+/// The scene and the camera, for an image with these capabilities.
+#[inline(never)]
+fn scene<'b>(boot: &Boot<'b>, image: Capabilities) -> Result<(Scene<'b>, &'b CameraRecord), Fault> {
+    let record = CameraRecord::of_bytes(boot.camera).ok_or(Fault::Scene)?;
+    let scene = Scene::view(boot.scene, image)?.seen_from(record, image)?;
+    Ok((scene, record))
 }
 
 /// What the tracer has to know of the boot block.

@@ -54,6 +54,8 @@ capabilities! {
     ClippedLights = "clipped-lights",
     /// Such emitters that are balls: see [`BallLight`](crate::light::BallLight).
     BallLights = "ball-lights",
+    /// Specular balls that paths are guided to: see [`Guide`](crate::light::Guide).
+    Guides = "guides",
     /// Samples by an additive recurrence: see [`Kronecker`](crate::kronecker::Kronecker).
     Kronecker = "kronecker",
     /// Russian roulette; otherwise paths end at a fixed depth.
@@ -79,6 +81,7 @@ impl Capabilities {
         .without(Capability::ManyLights)
         .without(Capability::ClippedLights)
         .without(Capability::BallLights)
+        .without(Capability::Guides)
         .without(Capability::Kronecker);
 
     /// The set of these.

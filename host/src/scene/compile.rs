@@ -12,6 +12,7 @@ use tracer::scene::{Capabilities, Capability, Header, MAX_LIGHT_BYTES};
 
 use super::emitters::Emitters;
 use super::fixed::{q0_32, q16, q30};
+use super::guides::Guides;
 use super::light::Light;
 use super::proof::Proved;
 use super::scale::{LONGEST, Scale};
@@ -115,20 +116,24 @@ pub fn compile(scene: &Scene, width: u16, height: u16, integrator: Integrator) -
         .iter()
         .map(|sphere| vast::record(sphere, extent.middle, proved.origin, id_of(sphere)))
         .collect();
-    let emitters = match integrator {
-        Integrator::Path => Emitters::default(),
-        Integrator::NextEvent => Emitters::of(&spheres, &proved.records(), &extent, MAX_LIGHT_BYTES),
-    };
+    let (mut emitters, mut guides) = (Emitters::default(), Guides::default());
+    if integrator == Integrator::NextEvent {
+        let records = proved.records();
+        let has_all_shapes = !hollow.is_empty() && !vast.is_empty();
+        emitters = Emitters::of(&spheres, &records, &extent, MAX_LIGHT_BYTES, !has_all_shapes);
+        // A core's code memory holds one of them.
+        if emitters.balls.is_empty() && !has_all_shapes {
+            guides = Guides::of(&spheres, &records, &emitters, &extent);
+            guides.compensate(&mut materials, &mut emitters);
+        }
+    }
     let needs = needs(&hollow, &solid, &vast)
         .union(proved.needs())
-        .union(emitters.needs());
-    let header = Header::new(
-        needs,
-        materials.len() as u16,
-        proved.grid,
-        counts,
-        emitters.counts(),
-    );
+        .union(emitters.needs())
+        .union(guides.needs());
+    let [caps, balls] = emitters.counts();
+    let lights = [caps, balls, guides.records.len() as u16];
+    let header = Header::new(needs, materials.len() as u16, proved.grid, counts, lights);
     let blob = [
         bytemuck::bytes_of(&header),
         bytemuck::cast_slice(proved.room.as_slice()),
@@ -138,6 +143,7 @@ pub fn compile(scene: &Scene, width: u16, height: u16, integrator: Integrator) -
         bytemuck::cast_slice(&materials),
         bytemuck::cast_slice(&emitters.caps),
         bytemuck::cast_slice(&emitters.balls),
+        bytemuck::cast_slice(&guides.records),
     ]
     .concat();
     let blob = Blob::new(&blob);

@@ -41,8 +41,17 @@ struct Found<'r> {
 
 impl Emitters {
     /// Those among `spheres`, in a core's unit, of which the first have these records: all that are not vast. Their records take no more
-    /// than `room` bytes: of more emitters the weakest are left to paths.
-    pub(super) fn of(spheres: &[&Sphere], known: &[SphereRecord], extent: &Extent<'_>, room: usize) -> Self {
+    /// than `room` bytes: of more emitters the weakest are left to paths. So are all balls, unless they are `with_balls`.
+    pub(super) fn of(
+        spheres: &[&Sphere],
+        known: &[SphereRecord],
+        extent: &Extent<'_>,
+        room: usize,
+        with_balls: bool,
+    ) -> Self {
+        if !spheres.iter().any(|sphere| is_looking(sphere)) {
+            return Self::default();
+        }
         let found = spheres
             .iter()
             .zip(known)
@@ -54,7 +63,7 @@ impl Emitters {
                     return None;
                 }
                 let seen = Seen::of(index, spheres)?;
-                Some(Found {
+                (seen.cap.is_some() || with_balls).then(|| Found {
                     index,
                     record,
                     radius: sphere.radius,
@@ -96,6 +105,11 @@ impl Emitters {
             .with_if(!self.balls.is_empty(), Capability::BallLights)
             .with_if(self.are_clipped(), Capability::ClippedLights)
     }
+}
+
+/// Whether it looks for light.
+fn is_looking(sphere: &Sphere) -> bool {
+    matches!(sphere.material, Material::Diffuse(colour) if colour.iter().any(|&c| c > 0.0))
 }
 
 /// The strongest of them that there is room for.
@@ -202,7 +216,7 @@ impl Found<'_> {
 }
 
 /// A number above 0.
-fn magnitude(value: f64) -> Magnitude {
+pub(super) fn magnitude(value: f64) -> Magnitude {
     let exponent = value.log2().floor() as i32 - 52;
     Magnitude::new((value * 2f64.powi(-exponent)).round() as u64, exponent)
 }

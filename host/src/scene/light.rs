@@ -5,6 +5,7 @@
 //! it is written is rendered with every emission times 2^exponent, and its picture divided by that. All scenes whose light
 //! fits have the exponent 0.
 
+use super::guides::MOST_OF_LOSS;
 use super::{Integrator, Material, Sphere};
 
 /// The most samples of one pixel in one unit.
@@ -82,10 +83,10 @@ impl Light {
             .filter(|sphere| matches!(sphere.material, Material::Diffuse(_)))
             .map(|sphere| most(reflectance(sphere)))
             .fold(0.0, f64::max);
-        let looked_for = match integrator {
-            Integrator::Path => 0.0,
-            // At each diffuse surface, of which a path meets as many as it survives.
-            Integrator::NextEvent => brightest,
+        let (looked_for, [survival, albedo]) = match integrator {
+            Integrator::Path => (0.0, [survival, albedo]),
+            // At each diffuse surface, of which a path meets as many as it survives, and of guided ones some more.
+            Integrator::NextEvent => (brightest, [survival, albedo].map(guided)),
         };
         Self {
             brightest,
@@ -159,6 +160,11 @@ impl Light {
             ),
         })
     }
+}
+
+/// The most that a surface of this reflectance reflects where some paths are guided.
+fn guided(reflectance: f64) -> f64 {
+    reflectance / (1.0 - MOST_OF_LOSS * (1.0 - reflectance))
 }
 
 fn reflectance(sphere: &Sphere) -> [f64; 3] {

@@ -7,6 +7,7 @@
 mod compile;
 mod emitters;
 mod fixed;
+mod guides;
 mod light;
 mod limits;
 mod parse;

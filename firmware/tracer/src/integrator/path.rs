@@ -8,7 +8,8 @@ use super::{Integrator, Sample};
 use crate::aggregate::Aggregate;
 use crate::arithmetic::{Formats, Sampling};
 use crate::capability::{Capabilities, Capability, Needs};
-use crate::geometry::{Interaction, Ray};
+use crate::geometry::{Interaction, PrimitiveId, Ray};
+use crate::light::Onward;
 use crate::material::{MaterialRecord, RadianceNumbers};
 use crate::plan::{Plan, Termination};
 use crate::profile::Profile;
@@ -56,6 +57,8 @@ impl<P: Profile, F: Needs> Integrator<P> for Path<P, F> {
         let mut rays = 0;
         // The surface that the ray comes from has looked for light.
         let mut has_looked = false;
+        // The ball that the surface has guided the path to.
+        let mut guided_to = PrimitiveId::NONE;
         loop {
             rays += 1;
             let Some(interaction) = scene.aggregate.intersect::<P, F>(&ray, self.epsilon) else {
@@ -65,6 +68,18 @@ impl<P: Profile, F: Needs> Integrator<P> for Path<P, F> {
             let Some(material) = scene.materials.get(interaction.material.index()) else {
                 break;
             };
+            if F::NEEDS.has(Capability::Guides) && has_looked {
+                if material.is_specular() {
+                    let share =
+                        scene.lights.share_of_guided::<P, F>(&ray, &interaction, guided_to, random);
+                    let Some(share) = share else {
+                        break;
+                    };
+                    throughput = throughput.map(|throughput| P::Numbers::attenuate(throughput, share));
+                } else if guided_to != PrimitiveId::NONE {
+                    break;
+                }
+            }
             if material.emits() {
                 let share = if has_looked {
                     scene.lights.share::<P::Numbers, F>(&ray, &interaction)
@@ -89,8 +104,22 @@ impl<P: Profile, F: Needs> Integrator<P> for Path<P, F> {
                 break;
             };
             throughput = attenuated::<P::Numbers>(throughput, share);
-            // Scene::view refuses what the image lacks.
-            let Some(direction) = material.sample::<P, F>(ray.direction, &interaction, random) else {
+            let onward = if F::NEEDS.has(Capability::Guides) && has_looked {
+                scene.lights.guide::<P, F>(&interaction, random)
+            } else {
+                Onward::Unguided
+            };
+            guided_to = PrimitiveId::NONE;
+            let direction = match onward {
+                // Scene::view refuses what the image lacks.
+                Onward::Unguided => material.sample::<P, F>(ray.direction, &interaction, random),
+                Onward::To(direction, ball) => {
+                    guided_to = ball;
+                    Some(direction)
+                }
+                Onward::Nowhere => None,
+            };
+            let Some(direction) = direction else {
                 break;
             };
             ray = Ray {

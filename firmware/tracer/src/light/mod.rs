@@ -11,11 +11,13 @@
 
 mod ball;
 mod cap;
+mod guide;
 mod magnitude;
 mod numbers;
 
 pub use ball::BallLight;
 pub use cap::CapLight;
+pub use guide::{Guide, MAX_GUIDES};
 pub use magnitude::Magnitude;
 pub use numbers::{LEAST_SHARE, LightNumbers, MOST_DOUBLINGS};
 
@@ -38,6 +40,8 @@ pub struct Lights<'s> {
     pub caps: &'s [CapLight],
     /// Balls.
     pub balls: &'s [BallLight],
+    /// Specular balls that paths are guided to.
+    pub guides: &'s [Guide],
 }
 
 /// What all kinds of emitters have in their records. Three words.
@@ -83,7 +87,7 @@ trait Light {
     fn emitter(&self) -> &Emitter;
 
     /// A direction in which it is, drawn from so that what can be seen of it is found evenly.
-    fn aim<N: LightNumbers>(&self, place: &Place<N>, random: &mut impl Random) -> Option<Aim<N>>;
+    fn aim<N: LightNumbers, F: Needs, R: Random>(&self, place: &Place<N>, random: &mut R) -> Option<Aim<N>>;
 
     /// The balance of light that `ray`, which left its surface at this cosine, has met at `point`; none where no connection leads there.
     fn balance<N: LightNumbers>(
@@ -121,10 +125,11 @@ pub struct Connection<N: RadianceNumbers> {
 
 impl<'s> Lights<'s> {
     /// Takes the records of so many of each kind from the front of a scene's bytes.
-    pub(crate) fn take(bytes: &mut &'s [u8], [caps, balls]: [u16; 2]) -> Result<Self, BlobError> {
+    pub(crate) fn take(bytes: &mut &'s [u8], [caps, balls, guides]: [u16; 3]) -> Result<Self, BlobError> {
         Ok(Self {
             caps: take_records(bytes, caps)?,
             balls: take_records(bytes, balls)?,
+            guides: take_records(bytes, guides)?,
         })
     }
 
@@ -132,7 +137,7 @@ impl<'s> Lights<'s> {
     #[inline]
     pub(crate) fn is_sound(&self, materials: usize, needs: Capabilities, image: Capabilities) -> bool {
         if !image.has(Capability::Lights) {
-            return self.caps.is_empty() && self.balls.is_empty();
+            return self.caps.is_empty() && self.balls.is_empty() && self.guides.is_empty();
         }
         fn all<L: Light>(lights: &[L], materials: usize, is_sound: fn(&L) -> bool) -> bool {
             lights
@@ -148,6 +153,10 @@ impl<'s> Lights<'s> {
                 || image.has(Capability::BallLights)
                     && needs.has(Capability::BallLights)
                     && all(self.balls, materials, BallLight::is_sound))
+            && (self.guides.is_empty()
+                || image.has(Capability::Guides)
+                    && needs.has(Capability::Guides)
+                    && self.guides.iter().all(Guide::is_sound))
     }
 
     /// Whether hollow shapes may hide parts of any.
@@ -179,8 +188,8 @@ impl<'s> Lights<'s> {
         let is_choice = F::NEEDS.has(Capability::ManyLights) && self.caps.len() + balls.len() > 1;
         let chance = if is_choice { random.fraction() } else { U0F32::ZERO };
         match chosen::<_, F>(self.caps, chance) {
-            Some(light) => connect::<P>(light, interaction, random),
-            None => connect::<P>(chosen::<_, F>(balls, chance)?, interaction, random),
+            Some(light) => connect::<P, F>(light, interaction, random),
+            None => connect::<P, F>(chosen::<_, F>(balls, chance)?, interaction, random),
         }
     }
 
@@ -208,6 +217,61 @@ impl<'s> Lights<'s> {
     }
 }
 
+/// Where a diffuse surface sends its path on.
+#[derive(Clone, Copy, Debug)]
+pub enum Onward<N: Formats> {
+    /// Wherever its BSDF does.
+    Unguided,
+    /// In this direction, to this ball.
+    To([N::Unit; 3], PrimitiveId),
+    /// Nowhere.
+    Nowhere,
+}
+
+impl Lights<'_> {
+    /// Whether a path is guided from a diffuse surface, and where to.
+    #[inline]
+    pub fn guide<P: Profile, F: Needs>(
+        &self,
+        interaction: &Interaction<P::Numbers>,
+        random: &mut P::Random,
+    ) -> Onward<P::Numbers> {
+        let chance = random.fraction();
+        let Some(guide) = self.guides.iter().find(|guide| chance <= guide.threshold) else {
+            return Onward::Unguided;
+        };
+        let place = Place {
+            point: interaction.point,
+            normal: interaction.facing(),
+        };
+        match guide.aim::<P::Numbers, F, _>(&place, random) {
+            Some(direction) => Onward::To(direction, guide.primitive),
+            None => Onward::Nowhere,
+        }
+    }
+
+    /// What counts of the light that comes along a path that a diffuse surface has sent on along `ray`, guided `to` a ball or to none,
+    /// and that has met a specular surface. None where that is nothing.
+    #[cold]
+    #[inline(never)]
+    pub fn share_of_guided<P: Profile, F: Needs>(
+        &self,
+        ray: &Ray<P::Numbers>,
+        interaction: &Interaction<P::Numbers>,
+        to: PrimitiveId,
+        random: &mut P::Random,
+    ) -> Option<<P::Numbers as RadianceNumbers>::Weight> {
+        let is_elsewhere = to != PrimitiveId::NONE && to != interaction.primitive;
+        let mut guides = self.guides.iter();
+        let guide = guides.find(|guide| guide.primitive == interaction.primitive);
+        match guide.and_then(|guide| guide.balance::<P::Numbers, F>(ray, interaction)) {
+            Some(balance) if !is_elsewhere => P::Numbers::thinned(balance, || random.fraction()),
+            None if to == PrimitiveId::NONE => Some(P::Numbers::FULL),
+            _ => None,
+        }
+    }
+}
+
 fn chosen<L: Light, F: Needs>(lights: &[L], chance: U0F32) -> Option<&L> {
     if !F::NEEDS.has(Capability::ManyLights) {
         return lights.first();
@@ -220,7 +284,7 @@ fn light_of<L: Light>(lights: &[L], primitive: PrimitiveId) -> Option<&L> {
 }
 
 #[inline]
-fn connect<P: Profile>(
+fn connect<P: Profile, F: Needs>(
     light: &impl Light,
     interaction: &Interaction<P::Numbers>,
     random: &mut P::Random,
@@ -229,7 +293,7 @@ fn connect<P: Profile>(
         point: interaction.point,
         normal: interaction.facing(),
     };
-    let aim = light.aim::<P::Numbers>(&place, random)?;
+    let aim = light.aim::<P::Numbers, F, _>(&place, random)?;
     let share = P::Numbers::thinned(aim.balance, || random.fraction())?;
     Some(Connection {
         sight: Sight {
@@ -246,6 +310,16 @@ fn connect<P: Profile>(
         material: light.emitter().material,
         share,
     })
+}
+
+/// A direction in a cone round `axis`, uniform by solid angle. Kept in one place: it is long.
+#[inline(never)]
+fn drawn_around<N: LightNumbers, F: Needs, R: Random>(
+    axis: [N::Unit; 3],
+    cone: N::Cone,
+    random: &mut R,
+) -> [N::Unit; 3] {
+    N::around(axis, drawn(random, |fraction| N::in_cone(cone, fraction)))
 }
 
 /// A sample that a fraction in five has not, drawn until there is one.

@@ -23,6 +23,8 @@ pub trait LightNumbers: SphereNumbers + RadianceNumbers + Sampling {
     /// The cone that a sphere of this radius fills, seen from so far (squared) from its centre; none from within. It may be too large by a
     /// bit, and never is too small.
     fn cone(radius: Self::Length, square: Self::Square) -> Option<Self::Cone>;
+    /// A cone of the scene, by the root of twice one minus the cosine of its half angle.
+    fn stored_cone(spread: I2F30) -> Self::Cone;
     /// A direction in a cone round the third axis, uniform by solid angle; none for one fraction in five.
     fn in_cone(cone: Self::Cone, fraction: U0F32) -> Option<[Self::Unit; 3]>;
 
@@ -99,6 +101,11 @@ impl LightNumbers for Mixed {
     }
 
     #[inline]
+    fn stored_cone(spread: I2F30) -> I2F30 {
+        spread
+    }
+
+    #[inline]
     fn in_cone(spread: I2F30, fraction: U0F32) -> Option<[I2F30; 3]> {
         let ([x, y], square) = on_disc(fraction)?;
         let bits = i64::from(spread.to_bits());
@@ -113,7 +120,7 @@ impl LightNumbers for Mixed {
         ])
     }
 
-    #[inline]
+    #[inline(never)]
     fn balance_of_cap(cosine: I2F30, turned: I16F16, reach: Magnitude, square: I32F32) -> Magnitude {
         let own = cosine.to_bits() as u64 * turned.to_bits() as u64;
         let own = Magnitude::new(own, -46).times(reach);
@@ -187,6 +194,10 @@ impl LightNumbers for Published {
 
     fn cone(radius: I16F16, square: I48F16) -> Option<I2F30> {
         Mixed::cone(radius, widened_square(square))
+    }
+
+    fn stored_cone(spread: I2F30) -> I2F30 {
+        spread
     }
 
     fn in_cone(cone: I2F30, fraction: U0F32) -> Option<[I16F16; 3]> {

@@ -1,13 +1,13 @@
 //! A scene's bytes: a header, what has been proved of its room if there is one, the records of each kind of shape in the order of
-//! [`crate::geometry`]'s list, the materials, and the emitters if any are looked for.
+//! [`crate::geometry`]'s list, the materials, and the emitters and guides if any are looked for.
 //!
 //! | bytes | header |
 //! | --- | --- |
-//! | 4 | magic "FXS5" |
+//! | 4 | magic "FXS6" |
 //! | 4 | what the scene needs: a bit for each [`Capability`](crate::capability::Capability) in its list's order |
 //! | 2 | materials |
 //! | 2 | the shift of the scene's grid |
-//! | 2 a kind | emitters of each kind that are looked for: caps, then balls |
+//! | 2 a kind | emitters of each kind that are looked for: caps, then balls; and balls that paths are guided to |
 //! | 2 a kind | primitives of each kind of shape |
 //! | to a multiple of 8 | zero |
 //!
@@ -21,7 +21,7 @@ use crate::aggregate::{Linear, Room};
 use crate::blob::{BlobError, take_records};
 use crate::capability::{Capabilities, Capability};
 use crate::geometry::{Grid, KINDS, MAX_PRIMITIVES, PrimitiveSet, Primitives, Shape, Visitor};
-use crate::light::{BallLight, Lights};
+use crate::light::{BallLight, Guide, Lights, MAX_GUIDES};
 use crate::material::MaterialRecord;
 
 const _: () = assert!(
@@ -33,7 +33,8 @@ const _: () = assert!(
 pub const MAX_BYTES: usize = size_of::<Header>()
     + size_of::<Room>()
     + MAX_PRIMITIVES * (MAX_RECORD + size_of::<MaterialRecord>())
-    + MAX_LIGHT_BYTES;
+    + MAX_LIGHT_BYTES
+    + MAX_GUIDES * size_of::<Guide>();
 
 /// The most bytes that emitters take: as many balls as there may be, or 116 caps.
 pub const MAX_LIGHT_BYTES: usize = MAX_PRIMITIVES * size_of::<BallLight>();
@@ -41,10 +42,10 @@ pub const MAX_LIGHT_BYTES: usize = MAX_PRIMITIVES * size_of::<BallLight>();
 /// The longest record of a shape.
 const MAX_RECORD: usize = 48;
 
-const MAGIC: [u8; 4] = *b"FXS5";
+const MAGIC: [u8; 4] = *b"FXS6";
 
 /// Kinds of shape, filled up to a multiple of 8 bytes with the fields before.
-const COUNTS: usize = (KINDS + 4).next_multiple_of(4) - 4;
+const COUNTS: usize = (KINDS + 5).next_multiple_of(4) - 5;
 
 /// What comes before the records.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
@@ -54,7 +55,7 @@ pub struct Header {
     needs: Capabilities,
     materials: u16,
     grid: u16,
-    lights: [u16; 2],
+    lights: [u16; 3],
     counts: [u16; COUNTS],
 }
 
@@ -67,7 +68,7 @@ impl Header {
         materials: u16,
         grid: Grid,
         primitives: [u16; KINDS],
-        lights: [u16; 2],
+        lights: [u16; 3],
     ) -> Self {
         let mut counts = [0; COUNTS];
         counts[..KINDS].copy_from_slice(&primitives);
@@ -94,8 +95,8 @@ impl<'s> Scene<'s> {
         if header.magic != MAGIC {
             return Err(BlobError::BadMagic);
         }
-        let [caps, balls] = header.lights.map(usize::from);
-        let too_many = primitives > MAX_PRIMITIVES || caps + balls > primitives;
+        let [caps, balls, guides] = header.lights.map(usize::from);
+        let too_many = primitives > MAX_PRIMITIVES || caps + balls > primitives || guides > MAX_GUIDES;
         if too_many || header.grid >= 32 || unused.iter().any(|&count| count != 0) {
             return Err(BlobError::BadHeader);
         }
