@@ -10,7 +10,7 @@ use tracer::aggregate::Room;
 use tracer::camera::CameraRecord;
 use tracer::geometry::sphere::{SolidSphere, SphereRecord, VastSphere};
 use tracer::geometry::{Grid, PrimitiveId, PrimitiveSet};
-use tracer::light::{BallLight, CapLight, Emitter, Magnitude};
+use tracer::light::{BallLight, CapLight, Emitter, Guide, MAX_GUIDES, Magnitude};
 use tracer::material::{Kind, MaterialId, MaterialRecord};
 use tracer::scene::{BlobError, Capabilities, Capability, Header, MAX_BYTES, MAX_PRIMITIVES, Scene};
 
@@ -34,14 +34,14 @@ fn a_sphere_is_these_bytes() {
         &[sphere([1.0, -1.0, 0.5], 2.0, 0.5, Kind::Diffuse)],
     );
     let words: [u32; 32] = [
-        u32::from_le_bytes(*b"FXS5"),
+        u32::from_le_bytes(*b"FXS6"),
         // The third and the seventh capability.
         0b100_0100,
-        // One material, and the grid's shift; no emitter; no hollow sphere, and one solid; no vast one.
+        // One material, and the grid's shift; no emitter; no guide and no hollow sphere; one solid, and no vast one.
         1 | GRID << 16,
         0,
-        1 << 16,
         0,
+        1,
         // A centre of (0, -1, 0) on the grid; a square of less than 2, 4.9 of the longest distance, and 7.
         0xffff_0000,
         0,
@@ -234,6 +234,53 @@ fn emitters_are_of_a_kind_and_a_material_that_there_is() {
 }
 
 #[test]
+fn guides_are_sound() {
+    let plain = blob(&[], &[sphere([0.0; 3], 1.0, 0.5, Kind::Diffuse)]);
+    let guide = Guide {
+        radius: I16F16::ONE,
+        spread: I2F30::from_num(0.5),
+        reach: Magnitude::new(2, 0),
+        steps: Guide::MOST_STEPS,
+        ..Guide::zeroed()
+    };
+    let with = |guides: &[Guide], without: &[Capability]| {
+        let mut bytes = [plain.bytes(), bytemuck::cast_slice(guides)].concat();
+        bytes[16] = guides.len() as u8;
+        let mut blob = Blob(vec![0; bytes.len() / 8]);
+        let needs = without
+            .iter()
+            .fold(Capabilities::ALL, |needs, &capability| needs.without(capability));
+        let needs = needs.without(Capability::Room).without(Capability::Coarse);
+        bytes[4..8].copy_from_slice(bytemuck::bytes_of(&needs));
+        blob.bytes_mut().copy_from_slice(&bytes);
+        Scene::view(blob.bytes(), Capabilities::ALL).map(|scene| scene.lights.guides == guides)
+    };
+    assert_eq!(with(&[guide; MAX_GUIDES], &[]), Ok(true));
+    assert_eq!(with(&[guide; MAX_GUIDES + 1], &[]), Err(BlobError::BadHeader));
+    assert_eq!(with(&[guide], &[Capability::Guides]), Err(BlobError::BadLight));
+    for bad in [
+        Guide {
+            radius: I16F16::ZERO,
+            ..guide
+        },
+        Guide {
+            spread: I2F30::ZERO,
+            ..guide
+        },
+        Guide {
+            reach: Magnitude::zeroed(),
+            ..guide
+        },
+        Guide {
+            steps: Guide::MOST_STEPS + 1,
+            ..guide
+        },
+    ] {
+        assert_eq!(with(&[bad], &[]), Err(BlobError::BadLight), "{bad:?}");
+    }
+}
+
+#[test]
 fn an_image_takes_no_more_than_it_can_do() {
     let mirror = blob_for(
         Capabilities::of(&[Capability::Solid, Capability::Mirror]),
@@ -273,7 +320,11 @@ fn as_many_spheres_as_there_may_be() {
     let ball = sphere([0.0; 3], 1.0, 0.5, Kind::Diffuse);
     let most = blob(&[], &vec![ball; MAX_PRIMITIVES]);
     let lights = MAX_PRIMITIVES * size_of::<BallLight>();
-    assert_eq!(most.bytes().len() + size_of::<Room>() + lights, MAX_BYTES);
+    let guides = MAX_GUIDES * size_of::<Guide>();
+    assert_eq!(
+        most.bytes().len() + size_of::<Room>() + lights + guides,
+        MAX_BYTES
+    );
     assert_eq!(counts(&most, Capabilities::ALL), Ok((0, MAX_PRIMITIVES)));
     let more = blob(&[ball], &vec![ball; MAX_PRIMITIVES]);
     assert_eq!(counts(&more, Capabilities::ALL), Err(BlobError::BadHeader));
@@ -331,8 +382,9 @@ proptest! {
         vast in 0u16..6,
         caps in 0u16..6,
         balls in 0u16..6,
+        guides in 0u16..6,
     ) {
-        let header = Header::new(Capabilities::ALL, materials, Grid::new(GRID), [hollow, solid, vast], [caps, balls]);
+        let header = Header::new(Capabilities::ALL, materials, Grid::new(GRID), [hollow, solid, vast], [caps, balls, guides]);
         bytemuck::cast_slice_mut(&mut words)[..HEADER].copy_from_slice(bytemuck::bytes_of(&header));
         let whole = HEADER
             + size_of::<Room>()
@@ -341,7 +393,8 @@ proptest! {
             + usize::from(vast) * size_of::<VastSphere>()
             + usize::from(materials) * MATERIAL
             + usize::from(caps) * size_of::<CapLight>()
-            + usize::from(balls) * size_of::<BallLight>();
+            + usize::from(balls) * size_of::<BallLight>()
+            + usize::from(guides) * size_of::<Guide>();
         let _ = counts(&Blob(words.clone()), Capabilities::ALL);
         words.resize(whole / 8, 0x0001_0000_0000_0000);
         let _ = counts(&Blob(words), Capabilities::ALL);

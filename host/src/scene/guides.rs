@@ -166,7 +166,11 @@ impl<'r> Candidate<'r> {
             index,
             record,
             share: if is_glass { SHARE_OF_GLASS } else { SHARE_OF_MIRROR },
-            angle: if is_glass { GLASS_ANGLE } else { (size / distance / 2.0).clamp(least, most) },
+            angle: if is_glass {
+                GLASS_ANGLE
+            } else {
+                (size / distance / 2.0).clamp(least, most)
+            },
             steps: if is_glass { 0 } else { STEPS },
             emitter: middle.map(q16),
             weight: met(brightest),

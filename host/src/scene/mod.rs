@@ -253,6 +253,8 @@ mod emitters_tests;
 #[cfg(test)]
 mod fitting_tests;
 #[cfg(test)]
+mod guides_tests;
+#[cfg(test)]
 mod scale_tests;
 #[cfg(test)]
 mod tests;

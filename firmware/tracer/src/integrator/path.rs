@@ -70,8 +70,9 @@ impl<P: Profile, F: Needs> Integrator<P> for Path<P, F> {
             };
             if F::NEEDS.has(Capability::Guides) && has_looked {
                 if material.is_specular() {
-                    let share =
-                        scene.lights.share_of_guided::<P, F>(&ray, &interaction, guided_to, random);
+                    let share = scene
+                        .lights
+                        .share_of_guided::<P, F>(&ray, &interaction, guided_to, random);
                     let Some(share) = share else {
                         break;
                     };

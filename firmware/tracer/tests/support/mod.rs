@@ -113,7 +113,7 @@ pub(crate) fn blob_for(needs: Capabilities, hollow: &[Sphere], solid: &[Sphere])
         count,
         grid,
         [hollow.len() as u16, solid.len() as u16, 0],
-        [0; 2],
+        [0; 3],
     );
     let bytes = [
         bytemuck::bytes_of(&header),
