@@ -21,7 +21,7 @@ impl Magnitude {
     };
 
     /// `number` 2^`exponent`, cut to 32 bits.
-    #[inline(never)]
+    #[inline]
     pub const fn new(number: u64, exponent: i32) -> Self {
         let (upper, lower) = ((number >> 32) as u32, number as u32);
         if upper == 0 {
@@ -73,7 +73,7 @@ impl Magnitude {
     }
 
     /// The sum, within 2 of the last of 32 bits.
-    #[inline(never)]
+    #[inline]
     #[must_use]
     pub const fn plus(self, other: Self) -> Self {
         let (large, small) = if self.exponent >= other.exponent && !self.is_zero() || other.is_zero() {
