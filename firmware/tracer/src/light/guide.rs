@@ -75,6 +75,10 @@ impl Guide {
 
     /// The balance of a path that goes on along `ray` and has met the ball; none where no guided one goes.
     #[inline(never)]
+    #[expect(
+        clippy::extra_unused_type_parameters,
+        reason = "what has the type of a program's own is compiled with that program's checks"
+    )]
     pub(super) fn balance<N: LightNumbers, F: Needs>(
         &self,
         ray: &Ray<N>,

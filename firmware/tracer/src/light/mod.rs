@@ -314,6 +314,10 @@ fn connect<P: Profile, F: Needs>(
 
 /// A direction in a cone round `axis`, uniform by solid angle. Kept in one place: it is long.
 #[inline(never)]
+#[expect(
+    clippy::extra_unused_type_parameters,
+    reason = "what has the type of a program's own is compiled with that program's checks"
+)]
 fn drawn_around<N: LightNumbers, F: Needs, R: Random>(
     axis: [N::Unit; 3],
     cone: N::Cone,
