@@ -13,6 +13,7 @@ fn rounds(mean: f64) -> Rounds {
     let known = Rendered {
         estimate: estimate(1.0, 0.01),
         plain_variance: vec![[6.4; 3]],
+        looking_variance: vec![[6.4; 3]],
     };
     Rounds {
         plain: vec![estimate(mean, 0.1); 3],

@@ -77,6 +77,54 @@ const LAMPS: &str = "format = 1
     radius = 0.9
     diffuse = [0.5, 0.5, 0.5]";
 
+/// A floor under a small lamp, with all that balls show of it: a mirror, glass that gathers its light, a ball that is cut by the floor, one that
+/// shines itself, a lamp that touches a ball.
+const BALLS: &str = "format = 1
+    [camera]
+    position = [0, 5, 9]
+    direction = [0, -0.6, -1]
+    plane_height = 1
+    [[sphere]]
+    name = \"floor\"
+    centre = [0, -1000, 0]
+    radius = 1000
+    diffuse = [0.7, 0.7, 0.6]
+    [[sphere]]
+    name = \"lamp\"
+    centre = [1, 6, 1]
+    radius = 0.6
+    emission = [20, 20, 15]
+    diffuse = [0.5, 0.5, 0.5]
+    [[sphere]]
+    name = \"mirror\"
+    centre = [-2, 1.2, 0]
+    radius = 1.2
+    mirror = [0.9, 0.9, 0.9]
+    [[sphere]]
+    name = \"glass\"
+    centre = [1.5, 1.5, -0.5]
+    radius = 1
+    glass = [0.98, 0.98, 0.98]
+    index = 1.5
+    [[sphere]]
+    name = \"cut\"
+    centre = [-0.5, 0.2, 2.5]
+    radius = 0.5
+    glass = [0.9, 0.9, 0.9]
+    index = 1.3
+    [[sphere]]
+    name = \"shining mirror\"
+    centre = [3.5, 0.7, 1.5]
+    radius = 0.7
+    emission = [0.5, 0.1, 0.1]
+    mirror = [0.8, 0.8, 0.8]
+    [[sphere]]
+    name = \"beside the mirror\"
+    centre = [-3.4, 2.4, 0.2]
+    radius = 0.4
+    emission = [1, 3, 1]
+    diffuse = [0, 0, 0]";
+
 fn parsed(name: &str, text: &str) -> Scene {
     Scene::parse(name, text).unwrap_or_else(|error| panic!("{error}"))
 }
@@ -90,6 +138,7 @@ fn kinds() -> Vec<Scene> {
             include_str!("../../../../scenes/hard/overlap.toml"),
         ),
         parsed("lamps.toml", LAMPS),
+        parsed("balls.toml", BALLS),
         parsed(
             "mirrors.toml",
             include_str!("../../../../tests/scenes/mirrors.toml"),
@@ -132,7 +181,7 @@ fn a_plain_path_tracer_agrees_in_scenes_of_every_kind() {
                 seed: 8,
                 ..job
             };
-            let plain = render_world(&World::plain(&scene), 1, &scene, &plain, |_| ()).estimate;
+            let plain = render_world(&World::plain(&scene, termination), 1, &scene, &plain, |_| ()).estimate;
             let name = format!("{} {termination:?}", scene.name);
             no_tile_differs(&name, &render(&scene, &job, |_| ()).estimate, &plain);
         }
@@ -152,19 +201,30 @@ fn lamps_that_are_a_tenth_brighter_are_seen() {
     assert!(compare(&wrong, &right).unwrap().tiles.failed().count() > 0);
 }
 
-/// Variance of a plain path tracer's sample, summed over pixels and channels: as it is measured, and as it is known from paths that look for
-/// light. What other seeds change of either is a hundredth, or two where mirrors hold paths for long.
-#[test]
-fn the_noise_of_plain_paths_is_known() {
+/// Variance of another path tracer's sample, summed over pixels and channels: as it is measured, and as it is known from the reference's paths.
+/// What other seeds change of either is a hundredth, or two where mirrors hold paths for long.
+#[track_caller]
+fn noise_is_known(world: fn(&Scene, Termination) -> World, known: fn(&Rendered) -> &Vec<[f64; 3]>) {
     let total = |variance: &[[f64; 3]]| variance.iter().flatten().sum::<f64>();
     for scene in kinds() {
         let job = Job { spp: 1024, ..TILES };
-        let plain = render_world(&World::plain(&scene), 1, &scene, &Job { seed: 8, ..job }, |_| ());
-        let measured = total(&plain.estimate.variance.expect("always")) * f64::from(job.spp);
-        let known = total(&render(&scene, &job, |_| ()).plain_variance);
+        let other = world(&scene, job.termination);
+        let other = render_world(&other, 1, &scene, &Job { seed: 8, ..job }, |_| ());
+        let measured = total(&other.estimate.variance.expect("always")) * f64::from(job.spp);
+        let known = total(known(&render(&scene, &job, |_| ())));
         let off = known / measured - 1.0;
         assert!(off.abs() < 0.05, "{}: {known} for {measured}", scene.name);
     }
+}
+
+#[test]
+fn the_noise_of_plain_paths_is_known() {
+    noise_is_known(World::plain, |rendered| &rendered.plain_variance);
+}
+
+#[test]
+fn the_noise_of_paths_that_look_for_light_is_known() {
+    noise_is_known(World::looking, |rendered| &rendered.looking_variance);
 }
 
 #[test]

@@ -15,11 +15,11 @@ use crate::platform::file::{OUR_FOLDER, write_whole};
 use crate::scene::Scene;
 
 /// To be raised when the reference's method changes: old files are then no longer found.
-const METHOD: u32 = 3;
-const MAGIC: &[u8; 8] = b"reffilm2";
+const METHOD: u32 = 4;
+const MAGIC: &[u8; 8] = b"reffilm3";
 const CHECKSUM: usize = 32;
-/// Mean, its variance, and the variance of a plain sample, of three channels.
-const PIXEL: usize = 9 * size_of::<f64>();
+/// Mean, its variance, and the variances of samples by two other methods, of three channels.
+const PIXEL: usize = 12 * size_of::<f64>();
 
 /// Where a reference came from.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -101,11 +101,13 @@ fn encode(rendered: &Rendered) -> Vec<u8> {
     let Rendered {
         estimate,
         plain_variance,
+        looking_variance,
     } = rendered;
     let pixels = estimate.picture.pixels().iter().flatten();
-    let variances = estimate.variance.iter().flatten().zip(plain_variance);
-    for (mean, (variance, plain)) in pixels.zip(variances) {
-        for value in mean.iter().chain(variance).chain(plain) {
+    let variances = estimate.variance.iter().flatten();
+    let others = plain_variance.iter().zip(looking_variance);
+    for ((mean, variance), (plain, looking)) in pixels.zip(variances).zip(others) {
+        for value in [mean, variance, plain, looking].into_iter().flatten() {
             bytes.extend(value.to_le_bytes());
         }
     }
@@ -127,13 +129,14 @@ fn decode(bytes: &[u8], job: &Job) -> Option<Rendered> {
     let (values, _) = values.as_chunks::<8>();
     let values: Vec<f64> = values.iter().map(|bytes| f64::from_le_bytes(*bytes)).collect();
     let (triples, _) = values.as_chunks::<3>();
-    let (pixels, _) = triples.as_chunks::<3>();
+    let (pixels, _) = triples.as_chunks::<4>();
     let pixels: Vec<Pixel> = pixels
         .iter()
-        .map(|&[mean, variance, plain_variance]| Pixel {
+        .map(|&[mean, variance, plain_variance, looking_variance]| Pixel {
             mean,
             variance,
             plain_variance,
+            looking_variance,
         })
         .collect();
     Some(of_pixels(&pixels, job))

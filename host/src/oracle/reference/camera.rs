@@ -1,7 +1,7 @@
 //! Rays of the camera.
 
 use super::ball::Ray;
-use super::sampling::{Draws, tent};
+use super::sampling::tent;
 use super::vector::Vector;
 use crate::scene::Camera;
 
@@ -34,16 +34,27 @@ impl View {
             height,
         }
     }
+}
 
-    /// A ray through one of the 2x2 sub-pixels of the pixel at `column` and `row`, row 0 at the top.
-    pub(super) fn ray(&self, [column, row]: [u16; 2], sub_pixel: [u8; 2], draws: &mut Draws<'_>) -> Ray {
-        let [sub_x, sub_y] = sub_pixel.map(f64::from);
-        let [filter_x, filter_y] = draws.of_pixel().map(tent);
-        let x = (f64::from(column) + (sub_x + 0.5 + filter_x) / 2.0) / self.width - 0.5;
-        let y = 0.5 - (f64::from(row) + (sub_y + 0.5 + filter_y) / 2.0) / self.height;
-        let direction = (self.direction + self.across * x + self.upwards * y).normalised();
+/// One of the 2x2 sub-pixels of the pixel at a column and row, row 0 at the top.
+pub(super) struct SubPixel<'a> {
+    pub(super) view: &'a View,
+    pub(super) pixel: [u16; 2],
+    pub(super) part: [u8; 2],
+}
+
+impl SubPixel<'_> {
+    /// A ray through it, by a point of the unit square that the filter spreads.
+    pub(super) fn ray(&self, point: [f64; 2]) -> Ray {
+        let view = self.view;
+        let [column, row] = self.pixel.map(f64::from);
+        let [part_x, part_y] = self.part.map(f64::from);
+        let [filter_x, filter_y] = point.map(tent);
+        let x = (column + (part_x + 0.5 + filter_x) / 2.0) / view.width - 0.5;
+        let y = 0.5 - (row + (part_y + 0.5 + filter_y) / 2.0) / view.height;
+        let direction = (view.direction + view.across * x + view.upwards * y).normalised();
         Ray {
-            origin: self.position + direction * self.near,
+            origin: view.position + direction * view.near,
             direction,
             departed: None,
         }

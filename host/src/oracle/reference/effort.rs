@@ -107,6 +107,7 @@ mod tests {
             Rendered {
                 estimate: flat(variance, job.spp),
                 plain_variance: Vec::new(),
+                looking_variance: Vec::new(),
             }
         });
         (jobs.into_inner(), found.estimate)

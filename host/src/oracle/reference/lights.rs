@@ -13,7 +13,7 @@
 use std::f64::consts::{PI, TAU};
 
 use super::ball::Ball;
-use super::sampling::{Draws, cosine_density, within_cone};
+use super::sampling::{Draws, height_of_cone, within_cone};
 use super::vector::Vector;
 use crate::scene::{Material, Scene, Sphere};
 
@@ -22,12 +22,13 @@ pub(super) struct Lights {
     emitters: Vec<Emitter>,
 }
 
-struct Emitter {
+/// What can be aimed at.
+pub(super) struct Emitter {
     /// Its number in the scene.
-    number: usize,
+    pub(super) number: usize,
     ball: Ball,
     /// Radiance, channels added up.
-    brightness: f64,
+    pub(super) brightness: f64,
     exposed: Option<Cap>,
     hollow: bool,
 }
@@ -41,6 +42,7 @@ struct Cap {
 }
 
 /// A point of a surface from where light is looked for.
+#[derive(Clone, Copy)]
 pub(super) struct Place {
     pub(super) point: Vector,
     /// On the side from which light comes.
@@ -76,43 +78,46 @@ impl Lights {
         Self { emitters: Vec::new() }
     }
 
-    /// A direction to look in from surface `number` of a path, if any emitter can be aimed at from there.
-    pub(super) fn direction(&self, place: &Place, number: u32, draws: &mut Draws<'_>) -> Option<Vector> {
-        let aims = || {
-            let emitters = self.emitters.iter();
-            emitters.filter_map(|emitter| Some((emitter.brightness, emitter.aim(place)?)))
-        };
-        let total: f64 = aims().map(|(brightness, aim)| brightness * aim.solid_angle).sum();
-        let mut left = draws.uniform() * total;
-        let mut chosen = None;
-        for (brightness, aim) in aims() {
-            left -= brightness * aim.solid_angle;
-            chosen = Some(aim);
-            if left < 0.0 {
-                break;
-            }
-        }
-        Some(chosen?.direction(place, draws.of_light(number)))
+    pub(super) fn emitters(&self) -> &[Emitter] {
+        &self.emitters
     }
 
-    /// What light from `direction`, at this cosine to the normal, counts at `place`, whichever of the two ways has found it.
-    ///
-    /// The path's own way is in proportion to the cosine, as what is reflected is. So light `L` that is looked for has the estimate
-    /// `(own / (looked + own)) L` times the colour: the weight `looked / (looked + own)` times `L` times what is reflected over
-    /// the density `looked`; and light that the path meets has the same.
-    pub(super) fn weight(&self, place: &Place, direction: Vector, cosine: f64) -> f64 {
-        let own = cosine_density(cosine);
-        own / (own + self.density(place, direction))
+    /// A direction to look in from surface `number` of a path, if any emitter can be aimed at from there.
+    pub(super) fn direction(&self, place: &Place, number: u32, draws: &mut Draws<'_>) -> Option<Vector> {
+        let mut total = 0.0;
+        let mut chosen = None;
+        let mut left = if self.emitters.len() > 1 {
+            draws.uniform()
+        } else {
+            0.0
+        };
+        // In one pass: each takes the place of those before it, with the chance of its share of all so far.
+        for emitter in &self.emitters {
+            let Some(aim) = emitter.aim(place) else {
+                continue;
+            };
+            let share = emitter.brightness * aim.solid_angle;
+            total += share;
+            let chance = share / total;
+            if left < chance {
+                left /= chance;
+                chosen = Some((emitter, aim));
+            } else {
+                left = (left - chance) / (1.0 - chance);
+            }
+        }
+        let (emitter, aim) = chosen?;
+        Some(emitter.direction(&aim, place, draws.of_light(number)))
     }
 
     /// Density of [`Lights::direction`] by solid angle.
-    fn density(&self, place: &Place, direction: Vector) -> f64 {
+    pub(super) fn density(&self, place: &Place, direction: Vector) -> f64 {
         let (mut sum, mut total) = (0.0, 0.0);
         for emitter in &self.emitters {
             if let Some(aim) = emitter.aim(place) {
                 let share = emitter.brightness * aim.solid_angle;
                 total += share;
-                sum += share * aim.density(place, direction);
+                sum += share * emitter.density(&aim, place, direction);
             }
         }
         if total > 0.0 { sum / total } else { 0.0 }
@@ -120,81 +125,85 @@ impl Lights {
 }
 
 /// How an emitter is aimed at from one place.
-struct Aim<'a> {
-    emitter: &'a Emitter,
+struct Aim {
     target: Target,
     /// What the emitter fills of the directions; of a cap, about.
     solid_angle: f64,
 }
 
 enum Target {
-    /// Directions around `axis` where one minus the cosine is below `height`.
-    Cone {
-        axis: Vector,
-        height: f64,
-    },
+    /// The cone that the ball fills: directions where one minus the cosine to its centre is below this.
+    Cone(f64),
     Cap(Cap),
 }
 
 impl Emitter {
+    /// About where what is seen of it is, and how far around that it reaches.
+    pub(super) fn extent(&self) -> (Vector, f64) {
+        match self.exposed {
+            Some(cap) if cap.height < 1.0 => {
+                let rim = (cap.height * (2.0 - cap.height)).sqrt();
+                (
+                    self.ball.centre + cap.axis * self.ball.radius,
+                    self.ball.radius * rim,
+                )
+            }
+            _ => (self.ball.centre, self.ball.radius),
+        }
+    }
+
     /// How to aim at it, if that is worth while: not at what is below the horizon, or fills half of the directions above it.
-    fn aim(&self, place: &Place) -> Option<Aim<'_>> {
+    #[inline(always)]
+    fn aim(&self, place: &Place) -> Option<Aim> {
         let to_centre = self.ball.centre - place.point;
         if self.number == place.ball || (!self.hollow && to_centre.dot(place.normal) < -self.ball.radius) {
             return None;
         }
-        let cone = self.cone(to_centre);
-        let cap = self.exposed.map(|cap| {
+        let mut smallest = Aim {
+            target: Target::Cone(2.0),
+            solid_angle: PI,
+        };
+        let (square, radius_square) = (to_centre.dot(to_centre), self.ball.radius * self.ball.radius);
+        if radius_square < square {
+            let height = height_of_cone(radius_square / square);
+            if TAU * height < PI {
+                smallest = Aim {
+                    target: Target::Cone(height),
+                    solid_angle: TAU * height,
+                };
+            }
+        }
+        if let Some(cap) = self.exposed {
             let middle = to_centre + cap.axis * self.ball.radius;
-            let area = TAU * self.ball.radius * self.ball.radius * cap.height;
-            (Target::Cap(cap), area / middle.dot(middle))
-        });
-        let smaller = [cone, cap]
-            .into_iter()
-            .flatten()
-            .min_by(|one, other| one.1.total_cmp(&other.1));
-        smaller
-            .filter(|&(_, solid_angle)| solid_angle < PI)
-            .map(|(target, solid_angle)| Aim {
-                emitter: self,
-                target,
-                solid_angle,
-            })
+            let solid_angle = TAU * radius_square * cap.height / middle.dot(middle);
+            if solid_angle < smallest.solid_angle {
+                smallest = Aim {
+                    target: Target::Cap(cap),
+                    solid_angle,
+                };
+            }
+        }
+        (smallest.solid_angle < PI).then_some(smallest)
     }
 
-    /// The cone that the ball fills, seen from outside.
-    fn cone(&self, to_centre: Vector) -> Option<(Target, f64)> {
-        let distance = to_centre.length();
-        let sine = self.ball.radius / distance;
-        (sine < 1.0).then(|| {
-            // 1 - cos = sin^2 / (1 + cos)
-            let height = sine * sine / (1.0 + ((1.0 - sine) * (1.0 + sine)).sqrt());
-            let axis = to_centre * (1.0 / distance);
-            (Target::Cone { axis, height }, TAU * height)
-        })
-    }
-}
-
-impl Aim<'_> {
-    fn direction(&self, place: &Place, pair: [f64; 2]) -> Vector {
-        match self.target {
-            Target::Cone { axis, height } => within_cone(axis, height, pair),
+    fn direction(&self, aim: &Aim, place: &Place, pair: [f64; 2]) -> Vector {
+        match aim.target {
+            Target::Cone(height) => within_cone((self.ball.centre - place.point).normalised(), height, pair),
             Target::Cap(cap) => {
-                let ball = &self.emitter.ball;
-                let point = ball.centre + within_cone(cap.axis, cap.height, pair) * ball.radius;
+                let point = self.ball.centre + within_cone(cap.axis, cap.height, pair) * self.ball.radius;
                 (point - place.point).normalised()
             }
         }
     }
 
-    fn density(&self, place: &Place, direction: Vector) -> f64 {
-        let ball = &self.emitter.ball;
+    fn density(&self, aim: &Aim, place: &Place, direction: Vector) -> f64 {
+        let ball = &self.ball;
         let Some(crossings) = ball.crossings(place.point, direction) else {
             return 0.0;
         };
-        match self.target {
-            Target::Cone { .. } if crossings[0] > 0.0 => 1.0 / self.solid_angle,
-            Target::Cone { .. } => 0.0,
+        match aim.target {
+            Target::Cone(_) if crossings[0] > 0.0 => 1.0 / aim.solid_angle,
+            Target::Cone(_) => 0.0,
             Target::Cap(cap) => {
                 // The line may go through the cap twice, and either point stands for this direction.
                 let distances = crossings.into_iter().filter(|&distance| {

@@ -1,7 +1,8 @@
 //! The reference: an independent path tracer in double precision, on all of the host's cores.
 //!
 //! `docs/reference.md` says by what method, and how it is checked. The rooms within: `vector` and `sampling` below all,
-//! `ball` (intersection), `camera`, `lights` (where light may come from), and `path`, which puts them together.
+//! `ball` (intersection), `camera`, `lights` (where light may come from), `images` with its table `rings` and `caustics` (where light may
+//! come from by way of balls), `walk` (what a path carries and is worth), and `path`, which puts them together.
 //!
 //! It tells what the picture *should* look like, and how sure it is of every pixel. Each row of the picture draws from a
 //! stream of its own (the generator's `jump` puts 2^128 numbers between them), so that the same seed gives the same
@@ -10,11 +11,15 @@
 mod ball;
 pub mod cache;
 mod camera;
+mod caustics;
 pub mod effort;
+mod images;
 mod lights;
 mod path;
+mod rings;
 mod sampling;
 mod vector;
+mod walk;
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -22,7 +27,8 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use rand_xoshiro::rand_core::SeedableRng;
 use rayon::prelude::*;
 
-use sampling::Batch;
+use camera::SubPixel;
+use sampling::{Batch, Draws};
 use vector::Vector;
 
 use super::moments::Moments;
@@ -68,11 +74,12 @@ pub struct Rendered {
     /// Variance of one sample of a *plain* path tracer, that meets light and does not look for it: what noise a picture by the cores' paths
     /// has if nothing is wrong with it.
     pub plain_variance: Vec<[f64; 3]>,
+    /// The same of a path tracer that looks for light at diffuse surfaces, and for nothing that balls show of it.
+    pub looking_variance: Vec<[f64; 3]>,
 }
 
 impl Rendered {
     /// `picture` by this integrator with a better estimate of its noise, if it has one: its own samples' and the reference's together.
-    /// What plain paths have is known; of those that look for light, the reference's are taken for an example.
     ///
     /// A picture whose few samples have met with nothing rare and bright takes itself for exact, and its darkness for an error.
     #[must_use]
@@ -82,12 +89,11 @@ impl Rendered {
             return picture;
         };
         let (samples, others) = (f64::from(samples), f64::from(others));
-        let looking = self.estimate.variance.iter().flatten();
-        let of_a_sample: Vec<[f64; 3]> = match integrator {
-            Integrator::Path => self.plain_variance.clone(),
-            Integrator::NextEvent => looking.map(|variance| variance.map(|v| v * others)).collect(),
+        let of_a_sample = match integrator {
+            Integrator::Path => &self.plain_variance,
+            Integrator::NextEvent => &self.looking_variance,
         };
-        let pooled = own.iter().zip(&of_a_sample).map(|(own, known)| {
+        let pooled = own.iter().zip(of_a_sample).map(|(own, known)| {
             [0, 1, 2].map(|c| (samples * own[c] + others * known[c] / samples) / (samples + others))
         });
         Estimate {
@@ -109,19 +115,14 @@ pub fn render(scene: &Scene, job: &Job, progress: impl Fn(u64) + Sync) -> Render
         "{} samples per pixel: must be a multiple of 4",
         job.spp
     );
-    render_world(
-        &path::World::new(scene),
-        sampling::side(job.spp / 4),
-        scene,
-        job,
-        progress,
-    )
+    let world = path::World::new(scene, job.termination);
+    render_world(&world, sampling::batch_size(job.spp / 4), scene, job, progress)
 }
 
-/// Renders `world`, which is that of `scene`, in batches of `side` squared samples.
+/// Renders `world`, which is that of `scene`, in batches of so many samples.
 fn render_world(
     world: &path::World,
-    side: usize,
+    batch_size: u32,
     scene: &Scene,
     job: &Job,
     progress: impl Fn(u64) + Sync,
@@ -141,7 +142,7 @@ fn render_world(
         .zip(streams)
         .flat_map_iter(|(row, mut random)| {
             let pixels: Vec<_> = (0..job.width)
-                .map(|column| pixel(world, &view, side, [column, row], job, &mut random))
+                .map(|column| pixel(world, &view, [column, row], job.spp / 4, batch_size, &mut random))
                 .collect();
             let samples = u64::from(job.width) * u64::from(job.spp);
             progress(done.fetch_add(samples, Ordering::Relaxed) + samples);
@@ -160,6 +161,7 @@ fn of_pixels(pixels: &[Pixel], job: &Job) -> Rendered {
             spp: Some(job.spp),
         },
         plain_variance: pixels.iter().map(|pixel| pixel.plain_variance).collect(),
+        looking_variance: pixels.iter().map(|pixel| pixel.looking_variance).collect(),
     }
 }
 
@@ -171,60 +173,99 @@ struct Pixel {
     variance: [f64; 3],
     /// Of one plain sample.
     plain_variance: [f64; 3],
+    /// Of one that looks for light.
+    looking_variance: [f64; 3],
+}
+
+/// The samples of one sub-pixel.
+struct Stratum {
+    /// Of batches.
+    moments: Moments,
+    /// Mean squares of samples by other methods.
+    plain_square: Vector,
+    looking_square: Vector,
 }
 
 fn pixel(
     world: &path::World,
     view: &camera::View,
-    side: usize,
-    place: [u16; 2],
-    job: &Job,
+    pixel: [u16; 2],
+    samples: u32,
+    batch_size: u32,
     random: &mut Xoshiro256PlusPlus,
 ) -> Pixel {
-    let batches = job.spp / 4 / (side * side) as u32;
-    let mut strata = [Moments::default(); 4];
-    let mut plain_squares = [Vector::of([0.0; 3]); 4];
-    let sub_pixels = [[0, 0], [1, 0], [0, 1], [1, 1]];
-    for ((moments, squares), sub_pixel) in strata.iter_mut().zip(&mut plain_squares).zip(sub_pixels) {
-        for _ in 0..batches {
-            let batch = Batch::new(side, random);
-            let mut sum = Vector::of([0.0; 3]);
-            for sample in 0..batch.size() {
-                let mut draws = batch.draws(sample, random);
-                let found = world.sample(view, place, sub_pixel, job.termination, &mut draws);
-                sum = sum + found.radiance;
-                *squares = *squares + found.plain_square;
-            }
-            moments.add((sum * (1.0 / batch.size() as f64)).components());
-        }
-    }
-    let mean = [0, 1, 2].map(|channel| strata.iter().map(|stratum| stratum.mean[channel]).sum::<f64>() / 4.0);
+    let strata = [[0, 0], [1, 0], [0, 1], [1, 1]].map(|part| {
+        let sub_pixel = SubPixel { view, pixel, part };
+        stratum(world, &sub_pixel, samples, batch_size, random)
+    });
+    let mean = [0, 1, 2].map(|channel| {
+        strata
+            .iter()
+            .map(|stratum| stratum.moments.mean[channel])
+            .sum::<f64>()
+            / 4.0
+    });
     // The sub-pixels are strata of equal weight: the variances of their means add up, over 4 squared.
-    let variance = if batches > 1 {
+    let variance = if samples > batch_size {
         [0, 1, 2].map(|channel| {
-            strata
+            let variances = strata
                 .iter()
-                .map(|stratum| stratum.variance_of_mean(channel))
-                .sum::<f64>()
-                / 16.0
+                .map(|stratum| stratum.moments.variance_of_mean(channel));
+            variances.sum::<f64>() / 16.0
         })
     } else {
         let mut all = Moments::default();
-        strata.iter().for_each(|stratum| all.add(stratum.mean));
+        strata.iter().for_each(|stratum| all.add(stratum.moments.mean));
         [0, 1, 2].map(|channel| all.variance_of_mean(channel))
     };
-    let a_sub_pixel = 4.0 / f64::from(job.spp);
-    let plain_variance = [0, 1, 2].map(|channel| {
-        let strata = strata.iter().zip(&plain_squares);
-        let variances = strata.map(|(moments, squares)| {
-            (squares.components()[channel] * a_sub_pixel - moments.mean[channel].powi(2)).max(0.0)
-        });
-        variances.sum::<f64>() / 4.0
-    });
+    let variance_by = |square: fn(&Stratum) -> Vector| {
+        [0, 1, 2].map(|channel| {
+            let variances = strata.iter().map(|stratum| {
+                let square = square(stratum).components()[channel];
+                (square - stratum.moments.mean[channel].powi(2)).max(0.0)
+            });
+            variances.sum::<f64>() / 4.0
+        })
+    };
     Pixel {
         mean,
         variance,
-        plain_variance,
+        plain_variance: variance_by(|stratum| stratum.plain_square),
+        looking_variance: variance_by(|stratum| stratum.looking_square),
+    }
+}
+
+fn stratum(
+    world: &path::World,
+    sub_pixel: &SubPixel<'_>,
+    samples: u32,
+    batch_size: u32,
+    random: &mut Xoshiro256PlusPlus,
+) -> Stratum {
+    let dark = Vector::of([0.0; 3]);
+    let mut moments = Moments::default();
+    let (mut plain_square, mut looking_square) = (dark, dark);
+    let shows_an_edge = world.shows_an_edge(sub_pixel, &mut Draws::free(random));
+    for _ in 0..samples / batch_size {
+        let mut sum = dark;
+        Batch::new(batch_size, random).draws(random, |draws| {
+            let found = world.sample(sub_pixel, draws);
+            let seen = if shows_an_edge {
+                world.seen(sub_pixel, draws)
+            } else {
+                found.seen
+            };
+            sum = sum + found.reflected + seen;
+            plain_square = plain_square + found.plain_square;
+            looking_square = looking_square + found.looking_square;
+        });
+        moments.add((sum * (1.0 / f64::from(batch_size))).components());
+    }
+    let of_a_sample = 1.0 / f64::from(samples);
+    Stratum {
+        moments,
+        plain_square: plain_square * of_a_sample,
+        looking_square: looking_square * of_a_sample,
     }
 }
 

@@ -250,9 +250,12 @@ fn noise_is_that_of_all_samples() {
     let known = Rendered {
         estimate: estimate(0.1, 192),
         plain_variance: vec![[4.0; 3]],
+        looking_variance: vec![[2.0; 3]],
     };
-    let pooled = known.pooled_noise(estimate(0.0, 64), Integrator::Path);
-    assert_eq!(pooled.variance, Some(vec![[3.0 / 64.0; 3]]));
+    for (integrator, variance) in [(Integrator::Path, 3.0), (Integrator::NextEvent, 1.5)] {
+        let pooled = known.pooled_noise(estimate(0.0, 64), integrator);
+        assert_eq!(pooled.variance, Some(vec![[variance / 64.0; 3]]));
+    }
     let unknown = Estimate {
         variance: None,
         ..estimate(0.0, 64)

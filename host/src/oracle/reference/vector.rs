@@ -49,13 +49,14 @@ impl Vector {
 
     /// Two unit vectors that are perpendicular to this one, itself a unit vector, and to each other.
     pub(super) fn tangents(self) -> [Self; 2] {
-        let helper = if self.x.abs() > 0.1 {
-            [0.0, 1.0, 0.0]
-        } else {
-            [1.0, 0.0, 0.0]
-        };
-        let tangent = Self::of(helper).cross(self).normalised();
-        [tangent, self.cross(tangent)]
+        // Duff and others, "Building an Orthonormal Basis, Revisited", 2017.
+        let sign = 1.0f64.copysign(self.z);
+        let a = -1.0 / (sign + self.z);
+        let b = self.x * self.y * a;
+        [
+            Self::of([1.0 + sign * self.x * self.x * a, sign * b, -sign * self.x]),
+            Self::of([b, sign + self.y * self.y * a, -self.y]),
+        ]
     }
 }
 
