@@ -236,6 +236,10 @@ impl Lights<'_> {
         interaction: &Interaction<P::Numbers>,
         random: &mut P::Random,
     ) -> Onward<P::Numbers> {
+        // A scene without guides has the same samples in every image.
+        if self.guides.is_empty() {
+            return Onward::Unguided;
+        }
         let chance = random.fraction();
         let Some(guide) = self.guides.iter().find(|guide| chance <= guide.threshold) else {
             return Onward::Unguided;
