@@ -5,7 +5,7 @@ use fixedmath::{I2F30, I16F16, U0F32};
 use tracer::arithmetic::{Mixed, Sampling};
 use tracer::capability::All;
 use tracer::geometry::{Interaction, MaterialId, PrimitiveId, Ray};
-use tracer::light::{Guide, Lights, Magnitude, Onward};
+use tracer::light::{Counts, Guide, Lights, Magnitude, Onward};
 use tracer::profile::{Precise, Profile};
 use tracer::random::Random;
 
@@ -119,7 +119,11 @@ fn weight(balls: &[Ball], lights: &Lights<'_>, at: &Interaction<Mixed>, random: 
         material: MaterialId::new(0),
     };
     let share = lights.share_of_guided::<Precise, All>(&ray, &met, to, random);
-    share.map_or(0.0, |share| share.to_num::<f64>()) / own
+    match share {
+        Counts::InFull => 1.0 / own,
+        Counts::InPart(share) => share.to_num::<f64>() / own,
+        Counts::ForNothing => 0.0,
+    }
 }
 
 const MIRROR: Ball = Ball {
@@ -251,7 +255,7 @@ fn a_guided_path_counts_only_where_it_was_guided_to() {
     let mut share =
         |primitive, to| lights.share_of_guided::<Precise, All>(&ray, &met(primitive), to, &mut random);
     let [mirror, glass, other] = [index, 1, 5].map(PrimitiveId::new);
-    assert_eq!(share(mirror, glass), None);
-    assert_eq!(share(other, glass), None);
-    assert_eq!(share(other, PrimitiveId::NONE), Some(U0F32::MAX));
+    assert_eq!(share(mirror, glass), Counts::ForNothing);
+    assert_eq!(share(other, glass), Counts::ForNothing);
+    assert_eq!(share(other, PrimitiveId::NONE), Counts::InFull);
 }

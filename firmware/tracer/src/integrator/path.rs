@@ -9,7 +9,7 @@ use crate::aggregate::Aggregate;
 use crate::arithmetic::{Formats, Sampling};
 use crate::capability::{Capabilities, Capability, Needs};
 use crate::geometry::{Interaction, PrimitiveId, Ray};
-use crate::light::Onward;
+use crate::light::{Counts, Onward};
 use crate::material::{MaterialRecord, RadianceNumbers};
 use crate::plan::{Plan, Termination};
 use crate::profile::Profile;
@@ -70,13 +70,15 @@ impl<P: Profile, F: Needs> Integrator<P> for Path<P, F> {
             };
             if F::NEEDS.has(Capability::Guides) && has_looked {
                 if material.is_specular() {
-                    let share = scene
-                        .lights
-                        .share_of_guided::<P, F>(&ray, &interaction, guided_to, random);
-                    let Some(share) = share else {
-                        break;
-                    };
-                    throughput = throughput.map(|throughput| P::Numbers::attenuate(throughput, share));
+                    let lights = &scene.lights;
+                    match lights.share_of_guided::<P, F>(&ray, &interaction, guided_to, random) {
+                        Counts::InFull => {}
+                        Counts::InPart(share) => {
+                            throughput =
+                                throughput.map(|throughput| P::Numbers::attenuate(throughput, share));
+                        }
+                        Counts::ForNothing => break,
+                    }
                 } else if guided_to != PrimitiveId::NONE {
                     break;
                 }

@@ -228,6 +228,17 @@ pub enum Onward<N: Formats> {
     Nowhere,
 }
 
+/// What counts of the light that comes along a path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Counts<W> {
+    /// All of it.
+    InFull,
+    /// This share.
+    InPart(W),
+    /// Nothing.
+    ForNothing,
+}
+
 impl Lights<'_> {
     /// Whether a path is guided from a diffuse surface, and where to.
     #[inline]
@@ -255,7 +266,7 @@ impl Lights<'_> {
     }
 
     /// What counts of the light that comes along a path that a diffuse surface has sent on along `ray`, guided `to` a ball or to none,
-    /// and that has met a specular surface. None where that is nothing.
+    /// and that has met a specular surface.
     #[cold]
     #[inline(never)]
     pub fn share_of_guided<P: Profile, F: Needs>(
@@ -264,14 +275,16 @@ impl Lights<'_> {
         interaction: &Interaction<P::Numbers>,
         to: PrimitiveId,
         random: &mut P::Random,
-    ) -> Option<<P::Numbers as RadianceNumbers>::Weight> {
+    ) -> Counts<<P::Numbers as RadianceNumbers>::Weight> {
         let is_elsewhere = to != PrimitiveId::NONE && to != interaction.primitive;
         let mut guides = self.guides.iter();
         let guide = guides.find(|guide| guide.primitive == interaction.primitive);
         match guide.and_then(|guide| guide.balance::<P::Numbers, F>(ray, interaction)) {
-            Some(balance) if !is_elsewhere => P::Numbers::thinned(balance, || random.fraction()),
-            None if to == PrimitiveId::NONE => Some(P::Numbers::FULL),
-            _ => None,
+            Some(balance) if !is_elsewhere => {
+                P::Numbers::thinned(balance, || random.fraction()).map_or(Counts::ForNothing, Counts::InPart)
+            }
+            None if to == PrimitiveId::NONE => Counts::InFull,
+            _ => Counts::ForNothing,
         }
     }
 }
