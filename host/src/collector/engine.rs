@@ -187,6 +187,8 @@ impl<'a> Engine<'a> {
         record.units += 1;
         record.ticks += u64::from(pixels.ticks);
         record.rays += u64::from(pixels.rays);
+        let (unit, ticks) = (pixels.unit, pixels.ticks);
+        self.events.push(Event::Unit { core, unit, ticks });
         Ok(())
     }
 

@@ -9,6 +9,15 @@ use super::cores::Cause;
 pub enum Event {
     /// How far it is, many times a second.
     State(State),
+    /// A unit is in that was not in before.
+    Unit {
+        /// The core that rendered it.
+        core: u16,
+        /// Its id.
+        unit: u32,
+        /// Ticks of the core's clock of 24 MHz that it took.
+        ticks: u32,
+    },
     /// A core has failed and is started again.
     Restarted {
         /// The core.

@@ -32,7 +32,7 @@ use std::time::Duration;
 use super::pace::Pace;
 
 /// Leases a core may hold: one to work at, and two so that it never waits for the host.
-const LEASES_PER_CORE: usize = 3;
+pub const LEASES_PER_CORE: usize = 3;
 /// How long a lease should last.
 const LEASE_TIME: Duration = Duration::from_millis(60);
 /// The most units in one lease.

@@ -50,6 +50,10 @@ impl Progress {
 
     /// Shows this, soon.
     pub fn see(&self, event: Event) {
+        // Of units there are too many for people, who see their number.
+        if matches!(event, Event::Unit { .. }) {
+            return;
+        }
         // It has ended only if it panicked, which the user has seen.
         let _gone = self.events.send(event);
     }
@@ -120,6 +124,7 @@ impl Display {
 fn described(event: &Event) -> String {
     match event {
         Event::State(state) => state.describe(),
+        Event::Unit { core, unit, ticks } => format!("core {core} took {ticks} ticks for unit {unit}"),
         Event::Restarted {
             core,
             time,

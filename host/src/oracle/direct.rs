@@ -9,6 +9,7 @@ use tracer::scene::All;
 use tracer::unit::{Plan, SPAN, Sums, render};
 use wire::PixelSums;
 
+use crate::firmware::arithmetic::{Arithmetic, Sampler, with_profile};
 use crate::image::film::Film;
 use crate::scene::CompiledScene;
 
@@ -38,4 +39,12 @@ pub fn film<P: Profile>(compiled: &CompiledScene, plan: &Plan) -> Film {
             .expect("units lie within the film");
     }
     film
+}
+
+/// The same by a profile and a sampler that are chosen at run time.
+///
+/// # Panics
+/// If the plan has more units than there are ids.
+pub fn film_by(profile: Arithmetic, sampler: Sampler, compiled: &CompiledScene, plan: &Plan) -> Film {
+    with_profile!(profile, sampler, P => film::<P>(compiled, plan))
 }

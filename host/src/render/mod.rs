@@ -12,6 +12,7 @@ pub mod options;
 mod record;
 pub mod report;
 mod results;
+pub mod timed;
 mod trace;
 
 use std::net::{Ipv4Addr, UdpSocket};

@@ -18,6 +18,7 @@ mod output;
 mod places;
 mod processes;
 mod profile;
+mod scaling;
 mod size;
 mod soft_float;
 mod trace;

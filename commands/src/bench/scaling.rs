@@ -1,0 +1,56 @@
+//! `cargo xtask bench scaling`
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::sync::atomic::AtomicBool;
+
+use anyhow::Context;
+use host::bench::scaling::{self, Experiment};
+use host::platform::console::say;
+use host::platform::workspace;
+
+use crate::SetUp;
+
+/// Arguments of `bench scaling`.
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// Scene file [default: scenes/cornell.toml of the checkout]
+    scene: Option<PathBuf>,
+    /// Numbers of cores [default: 1,2,4,8,16,32,64,136; with --quick 1,2,4]
+    #[arg(long, value_name = "N,..", value_delimiter = ',', value_parser = clap::value_parser!(u16).range(1..=1024))]
+    cores: Vec<u16>,
+    /// A tiny picture, to see whether all works; its figures say little
+    #[arg(long)]
+    quick: bool,
+    /// Write all figures as JSON, too
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+    #[command(flatten)]
+    set_up: SetUp,
+}
+
+/// Up to the published number of cores.
+const CORES: [u16; 8] = [1, 2, 4, 8, 16, 32, 64, scaling::published::CORES];
+const FEW_CORES: [u16; 3] = [1, 2, 4];
+
+pub(crate) fn run(arguments: &Arguments, interrupted: &AtomicBool) -> anyhow::Result<ExitCode> {
+    let (experiment, usual): (fn(_, _, _) -> _, &[u16]) = if arguments.quick {
+        (Experiment::quick, &FEW_CORES)
+    } else {
+        (Experiment::full, &CORES)
+    };
+    let cores = if arguments.cores.is_empty() {
+        usual.to_vec()
+    } else {
+        arguments.cores.clone()
+    };
+    let scene = workspace::scene(arguments.scene.as_deref())?;
+    let experiment = experiment(scene, cores, arguments.set_up.install());
+    let outcome = scaling::measure(&experiment, interrupted)?;
+    if let Some(path) = &arguments.json {
+        let json = serde_json::to_string_pretty(&outcome)?;
+        std::fs::write(path, json + "\n").with_context(|| format!("cannot write {}", path.display()))?;
+    }
+    say(scaling::table(&outcome))?;
+    Ok(ExitCode::SUCCESS)
+}
