@@ -8,6 +8,7 @@ use anyhow::Context;
 use host::bench::scaling::{self, Experiment};
 use host::platform::console::say;
 use host::platform::workspace;
+use host::render::options::Size;
 
 use crate::SetUp;
 
@@ -19,8 +20,11 @@ pub(crate) struct Arguments {
     /// Numbers of cores [default: 1,2,4,8,16,32,64,136; with --quick 1,2,4]
     #[arg(long, value_name = "N,..", value_delimiter = ',', value_parser = clap::value_parser!(u16).range(1..=1024))]
     cores: Vec<u16>,
-    /// A tiny picture, to see whether all works; its figures say little
-    #[arg(long)]
+    /// Width and height in pixels [default: 480x360, which has 79 units for each of 136 cores]
+    #[arg(long, value_name = "WxH")]
+    size: Option<Size>,
+    /// A tiny picture and no energy, to see whether all works; its figures say little
+    #[arg(long, conflicts_with = "size")]
     quick: bool,
     /// Write all figures as JSON, too
     #[arg(long, value_name = "FILE")]
@@ -45,7 +49,8 @@ pub(crate) fn run(arguments: &Arguments, interrupted: &AtomicBool) -> anyhow::Re
         arguments.cores.clone()
     };
     let scene = workspace::scene(arguments.scene.as_deref())?;
-    let experiment = experiment(scene, cores, arguments.set_up.install());
+    let mut experiment: Experiment = experiment(scene, cores, arguments.set_up.install());
+    experiment.size = arguments.size.unwrap_or(experiment.size);
     let outcome = scaling::measure(&experiment, interrupted)?;
     if let Some(path) = &arguments.json {
         let json = serde_json::to_string_pretty(&outcome)?;

@@ -12,7 +12,9 @@ use crate::collector::leases::LEASES_PER_CORE;
 use crate::render::options::End;
 
 /// Shares of the derived number of samples at which the simulation is run besides.
-const SHARES: [f64; 10] = [0.0625, 0.125, 0.25, 0.5, 0.75, 0.9, 1.1, 1.25, 1.5, 2.0];
+const SHARES: [f64; 9] = [0.0625, 0.125, 0.25, 0.5, 0.9, 1.1, 1.25, 1.5, 2.0];
+/// The share of linear that is wanted.
+const WANTED: f64 = 0.98;
 
 /// Units, and what they are of.
 #[derive(Clone, Debug)]
@@ -83,6 +85,8 @@ pub struct Derivation {
     pub samples_per_packet: u32,
     /// That many samples of a pixel.
     pub samples_of_a_pixel: u16,
+    /// The fewest samples in a packet, of those in `sweep`, that give 0.98 of linear with all HELLOs.
+    pub enough: Option<u32>,
     /// The same machine with fewer and more samples in a packet: units cost in proportion to their samples, which is modelled.
     pub sweep: Vec<Sweep>,
 }
@@ -181,6 +185,7 @@ impl Work {
             samples_per_packet_needed: needed.map(rounded),
             samples_per_packet: PACKET_PIXELS * derived,
             samples_of_a_pixel: derived as u16,
+            enough: None,
             sweep: Vec::new(),
         }
     }
@@ -202,19 +207,25 @@ impl Work {
         ]
     }
 
-    /// This machine with shares of so many samples of a pixel in a packet, and with more.
-    pub(super) fn sweep(&self, cores: u16, derived: u16) -> Vec<Sweep> {
-        let packet = f64::from(derived) * f64::from(PACKET_PIXELS);
-        let mut sizes: Vec<u16> = SHARES
-            .iter()
-            .filter_map(|share| u16::try_from(samples_of_a_pixel(share * packet)).ok())
+    /// Adds this machine with as many samples in a packet as were derived, by either rate, and with fewer and more.
+    pub(super) fn sweep(&self, derivation: &mut Derivation) {
+        let [mean, _] = derivation.samples_per_packet_needed;
+        let packet = f64::from(derivation.samples_per_packet);
+        let others = SHARES.iter().map(|share| share * packet).chain([mean]);
+        let others = others.filter_map(|samples| u16::try_from(samples_of_a_pixel(samples)).ok());
+        let mut sizes: Vec<u16> = others
             .filter(|&samples| samples <= wire::MAX_SAMPLES)
-            .chain([derived])
+            .chain([derivation.samples_of_a_pixel])
             .collect();
         sizes.sort_unstable();
         sizes.dedup();
-        let swept = |samples| self.with_samples(samples).swept(cores);
-        sizes.into_iter().map(swept).collect()
+        let swept = |samples| self.with_samples(samples).swept(derivation.cores);
+        derivation.sweep = sizes.into_iter().map(swept).collect();
+        let enough = derivation
+            .sweep
+            .iter()
+            .find(|sweep| sweep.share_of_linear >= WANTED);
+        derivation.enough = enough.map(|sweep| sweep.samples_per_packet);
     }
 
     fn swept(&self, cores: u16) -> Sweep {

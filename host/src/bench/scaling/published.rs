@@ -107,7 +107,7 @@ pub const MILLION_POWER: Assumption = Assumption {
     source: "SpiNNaker's largest machine: about 100 kW, cooling apart",
 };
 
-/// Packets that a collector takes in: as many as were seen to come through QEMU's network without loss (DESIGN, checked facts).
+/// Packets that a collector takes in: as many as were seen to come through QEMU's network without loss.
 pub const COLLECTOR: Assumption = Assumption {
     what: "packets that one collector takes in",
     value: 77_000.0,

@@ -230,6 +230,15 @@ fn derived(text: &mut String, derivation: &Derivation) {
             ),
         );
     }
+    if let Some(enough) = derivation.enough {
+        let enough = apart(enough.into());
+        line(
+            text,
+            format_args!(
+                "  the first of these with 0.98 of linear, HELLOs and all: {enough} samples a packet"
+            ),
+        );
+    }
 }
 
 fn million(text: &mut String, million: &Million) {

@@ -100,7 +100,7 @@ fn a_saturated_wire_carries_just_what_it_can() {
 fn the_derived_samples_are_where_the_wire_ceases_to_matter() {
     let work = work(64, vec![ms(25); 136 * 80]);
     // A core renders 40,960 samples a second: 136 / 1,500 s of that are 3,713.7, and 16 pixels of 236 samples 3,776.
-    let derivation = work.derivation(136);
+    let mut derivation = work.derivation(136);
     let [mean, quickest] = derivation.samples_per_packet_needed;
     assert!(
         (mean - 3713.7).abs() < 0.1 && (quickest - mean).abs() < 0.1,
@@ -110,7 +110,12 @@ fn the_derived_samples_are_where_the_wire_ceases_to_matter() {
         (derivation.samples_per_packet, derivation.samples_of_a_pixel),
         (3776, 236)
     );
-    for sweep in work.sweep(136, 236) {
+    work.sweep(&mut derivation);
+    assert!(
+        derivation.enough >= Some(derivation.samples_per_packet),
+        "{derivation:?}"
+    );
+    for sweep in derivation.sweep {
         if f64::from(sweep.samples_per_packet) < 0.95 * mean {
             let share = sweep.quiet_samples_per_second / sweep.wire;
             assert!(share > 0.97 && share <= 1.0, "{sweep:?}");
