@@ -2,7 +2,7 @@
 //! the energy of a sample.
 //!
 //! What is *run*: every unit of the picture, by emulated cores, as many as the figure has, up to 136 at once. Each unit's instructions are
-//! counted by its core's clock, and QEMU's plugin records what they cost in cycles ([`runs`]).
+//! counted by its core's clock, and QEMU's plugin records what they cost in cycles (`runs`).
 //!
 //! What is *modelled*: the processor's cycles (the tables of `cycles`), the way out of the machine (a queue with one server), and the time
 //! until the collector's answer is there. The leases are the collector's own, by its own table ([`machine`]).
