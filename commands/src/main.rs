@@ -9,6 +9,7 @@ mod licences;
 mod profile;
 mod qemu_run;
 mod render;
+mod report;
 mod size;
 mod step;
 mod test;
@@ -68,6 +69,11 @@ enum Verb {
     /// tables of the board's processor. Inlined functions are told apart. Where a function of the image has several callers, its
     /// cycles are shared among them in proportion to their calls.
     Profile(profile::Arguments),
+    /// Write the speed-against-error report: one HTML page with its plots, pictures and tables
+    ///
+    /// Measures operations, whole samples, each choice alone, error against time, the paper's figures, hard cases and the scenes, in
+    /// half an hour. A plot without data is an error, and the old page stays. `--out docs/report` is for the one in the repository.
+    Report(report::Arguments),
     /// Measure parts by themselves
     #[command(subcommand)]
     Bench(bench::Bench),
@@ -125,6 +131,7 @@ fn run(verb: Verb) -> anyhow::Result<ExitCode> {
         Verb::Trace(arguments) => trace::run(&arguments, interrupted),
         Verb::Size(arguments) => size::run(&arguments),
         Verb::Profile(arguments) => profile::run(&arguments, interrupted),
+        Verb::Report(arguments) => report::run(&arguments, interrupted),
         Verb::Bench(bench) => bench::run(&bench, interrupted),
         Verb::Verify(arguments) => verify::run(&arguments),
     }

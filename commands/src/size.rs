@@ -64,6 +64,7 @@ pub(crate) fn measure(toolchain: &Toolchain, scene: &Scene) -> anyhow::Result<Ve
             needs: compiled.needs.with(Capability::Roulette),
             log: None,
             soft_float: None,
+            choice: None,
         };
         let image = firmware::build(toolchain, board, &recipe)?;
         let footprint = Footprint::of(board, profile, &scene.name, &image, boot_block)?;

@@ -134,6 +134,7 @@ fn lint_firmware(toolchain: &Toolchain, scene: &Scene) -> anyhow::Result<()> {
             needs,
             log,
             soft_float: None,
+            choice: None,
         };
         let mut command = firmware::cargo(toolchain, board, "clippy", &recipe)?;
         command.args(["--lib", "--bins", "--examples", "--", "--deny", "warnings"]);

@@ -252,6 +252,7 @@ impl Series {
             cycles: true,
             code_access: 0,
             soft_float: kind.soft_float,
+            choice: None,
             port: None,
             no_install: self.no_install,
         }

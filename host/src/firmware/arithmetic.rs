@@ -91,6 +91,22 @@ macro_rules! with_profile {
 }
 pub(crate) use with_profile;
 
+/// Evaluates an expression with the type of `precise` but for a choice that is known at run time under a name.
+macro_rules! with_choice {
+    ($choice:expr, $name:ident => $body:expr) => {
+        with_choice!($choice, $name => $body; Root 0, Division 1, Directions 2, Generator 3, Intersection 4, Hemisphere 5, Sine 6)
+    };
+    ($choice:expr, $name:ident => $body:expr; $($variant:ident $number:literal),+) => {
+        match $choice {
+            $(choices::Choice::$variant => {
+                type $name = choices::Single<choices::Only<$number>>;
+                $body
+            })+
+        }
+    };
+}
+pub(crate) use with_choice;
+
 /// Where a picture's random numbers come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, clap::ValueEnum, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]

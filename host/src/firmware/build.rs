@@ -83,6 +83,9 @@ pub enum FirmwareError {
     },
 }
 
+/// The image, one of each board's examples, whose tracer has one choice of another kind.
+const CHOICE: &str = "choice";
+
 /// Builds a board's image for `recipe` and checks it.
 pub fn build(toolchain: &Toolchain, board: Board, recipe: &Recipe) -> Result<Image, FirmwareError> {
     let folder = target_folder()?;
@@ -101,6 +104,12 @@ pub fn build(toolchain: &Toolchain, board: Board, recipe: &Recipe) -> Result<Ima
     if let Some(format) = recipe.soft_float {
         command.args(["--example", format.example()]);
         built = example(board, format.example())?;
+    }
+    if let Some(choice) = recipe.choice {
+        command
+            .args(["--example", CHOICE])
+            .env("TRACER_CHOICE", choice.word());
+        built = example(board, CHOICE)?;
     }
     let output = interrupt::output(&mut command).map_err(failed(&toolchain.compiler.cargo))?;
     if !output.status.success() {
@@ -141,6 +150,7 @@ pub fn build_examples(
         needs: Capabilities::PATHS,
         log,
         soft_float: None,
+        choice: None,
     };
     let mut command = cargo(toolchain, board, "build", &recipe)?;
     for name in names {

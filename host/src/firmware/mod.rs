@@ -17,6 +17,8 @@ mod share;
 mod soft_float;
 pub mod symbols;
 
+pub use choices::Choice;
+
 pub use build::{
     FirmwareError, Image, build, build_examples, cargo, cargo_for, environment, example, target_folder,
 };

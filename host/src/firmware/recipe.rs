@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use choices::Choice;
 use tracer::scene::Capabilities;
 
 use super::arithmetic::Arithmetic;
@@ -53,6 +54,8 @@ pub struct Recipe {
     pub log: Option<Level>,
     /// The format that it computes in instead of fixed point; none for an image that may be a render's.
     pub soft_float: Option<SoftFloat>,
+    /// What is the published system's where all else is ours; none for an image that may be a render's.
+    pub choice: Option<Choice>,
 }
 
 impl Recipe {
@@ -65,11 +68,15 @@ impl Recipe {
     pub fn describe(&self) -> String {
         let log = self.log.map(|level| format!(", logging {level}"));
         let float = self.soft_float.map(|format| format!(", in soft {format}"));
+        let choice = self
+            .choice
+            .map(|choice| format!(", with the published {}", choice.word()));
         let words = self.words().replace(',', ", ");
         format!(
-            "profile {} and {words}{}{}",
+            "profile {} and {words}{}{}{}",
             self.profile,
             float.unwrap_or_default(),
+            choice.unwrap_or_default(),
             log.unwrap_or_default()
         )
     }
@@ -78,11 +85,13 @@ impl Recipe {
     pub(super) fn file_name(&self, board: Board) -> String {
         let log = self.log.map(|level| format!("-log-{level}"));
         let float = self.soft_float.map(|format| format!("-{format}"));
+        let choice = self.choice.map(|choice| format!("-published-{}", choice.word()));
         let words = self.words().replace(',', "-");
         format!(
-            "{board}-{}-{words}{}{}.elf",
+            "{board}-{}-{words}{}{}{}.elf",
             self.profile,
             float.unwrap_or_default(),
+            choice.unwrap_or_default(),
             log.unwrap_or_default()
         )
     }
@@ -102,6 +111,7 @@ mod tests {
             needs,
             log: None,
             soft_float: None,
+            choice: None,
         };
         assert_eq!(recipe.words(), "diffuse,glass,roulette");
         assert_eq!(
@@ -123,6 +133,14 @@ mod tests {
         assert_eq!(
             soft.file_name(Board::Versatilepb),
             "versatilepb-paper-diffuse-glass-roulette-f64.elf"
+        );
+        let single = Recipe {
+            choice: Some(Choice::Root),
+            ..recipe
+        };
+        assert_eq!(
+            single.file_name(Board::Versatilepb),
+            "versatilepb-paper-diffuse-glass-roulette-published-root.elf"
         );
     }
 }

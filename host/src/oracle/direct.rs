@@ -9,7 +9,8 @@ use tracer::scene::All;
 use tracer::unit::{Plan, SPAN, Sums, render};
 use wire::PixelSums;
 
-use crate::firmware::arithmetic::{Arithmetic, Sampler, with_profile};
+use crate::firmware::Choice;
+use crate::firmware::arithmetic::{Arithmetic, Sampler, with_choice, with_profile};
 use crate::image::film::Film;
 use crate::scene::CompiledScene;
 
@@ -44,7 +45,15 @@ pub fn film<P: Profile>(compiled: &CompiledScene, plan: &Plan) -> Film {
 /// The same by a profile and a sampler that are chosen at run time.
 ///
 /// # Panics
-/// If the plan has more units than there are ids.
-pub fn film_by(profile: Arithmetic, sampler: Sampler, compiled: &CompiledScene, plan: &Plan) -> Film {
+/// As [`film`] does.
+pub fn film_as(profile: Arithmetic, sampler: Sampler, compiled: &CompiledScene, plan: &Plan) -> Film {
     with_profile!(profile, sampler, P => film::<P>(compiled, plan))
+}
+
+/// The same by `precise` but for one choice, which is the published system's.
+///
+/// # Panics
+/// As [`film`] does.
+pub fn film_of_choice(choice: Choice, compiled: &CompiledScene, plan: &Plan) -> Film {
+    with_choice!(choice, P => film::<P>(compiled, plan))
 }

@@ -100,6 +100,9 @@ pub enum RenderError {
     /// Threads have a floating-point unit.
     #[error("soft float is for cores in QEMU: leave out --soft-float, or --backend native")]
     NoSoftFloat,
+    /// Threads have the profiles' own choices.
+    #[error("a single choice is measured on cores in QEMU: leave out --choice, or --backend native")]
+    NoChoice,
     /// The cycles could not be counted.
     #[error(transparent)]
     Cycles(#[from] CyclesError),

@@ -29,7 +29,7 @@ use crate::collector::{self, CollectError, Collection, End, Progress};
 use crate::firmware::arithmetic::Sampler;
 use crate::firmware::board::Board;
 use crate::firmware::{self, Image, Recipe};
-use crate::firmware::{Level, SoftFloat};
+use crate::firmware::{Choice, Level, SoftFloat};
 use crate::fleet::session::{Route, Session, boot_block_len};
 use crate::fleet::{Core, Elsewhere, Fleet, NativeFleet, QemuFleet};
 use crate::image::openexr;
@@ -84,6 +84,8 @@ struct Origin {
     log: Option<PathBuf>,
     /// What they computed in instead of fixed point.
     soft_float: Option<SoftFloat>,
+    /// What was the published system's where all else was ours.
+    choice: Option<Choice>,
     /// What records their flows.
     meter: Option<Meter>,
 }
@@ -155,6 +157,7 @@ impl Job {
             needs: self.needs(),
             log: None,
             soft_float: None,
+            choice: None,
         }
     }
 
@@ -186,6 +189,7 @@ impl Job {
             counts_instructions: false,
             log: None,
             soft_float: None,
+            choice: None,
             meter: None,
         };
         self.collect(
@@ -288,6 +292,7 @@ pub fn render(options: &RenderOptions, interrupted: &AtomicBool) -> Result<Finis
 struct Kind {
     log: Option<Level>,
     soft_float: Option<SoftFloat>,
+    choice: Option<Choice>,
 }
 
 /// Whose packets are to be recorded, and where.
@@ -309,6 +314,9 @@ impl Job {
         if options.backend == Backend::Native && options.soft_float.is_some() {
             return Err(RenderError::NoSoftFloat);
         }
+        if options.backend == Backend::Native && options.choice.is_some() {
+            return Err(RenderError::NoChoice);
+        }
         if options.backend == Backend::Native && options.cycles {
             return Err(RenderError::NoCycles);
         }
@@ -325,6 +333,7 @@ impl Job {
         let kind = Kind {
             log: options.log,
             soft_float: options.soft_float,
+            choice: options.choice,
         };
         let images = self.build(&tools, &options.boards, kind)?;
         let route = if emulated {
@@ -355,6 +364,7 @@ impl Job {
                     counts_instructions: true,
                     log: fleet.log().map(Path::to_owned),
                     soft_float: options.soft_float,
+                    choice: options.choice,
                     meter,
                 };
                 (Box::new(fleet) as Box<dyn Fleet>, origin)
@@ -368,6 +378,7 @@ impl Job {
                     counts_instructions: false,
                     log: None,
                     soft_float: None,
+                    choice: None,
                     meter: None,
                 };
                 (Box::new(fleet) as Box<dyn Fleet>, origin)
@@ -400,6 +411,7 @@ impl Job {
         let recipe = Recipe {
             log: kind.log,
             soft_float: kind.soft_float,
+            choice: kind.choice,
             ..self.recipe()
         };
         note(format!(

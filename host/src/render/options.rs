@@ -6,14 +6,14 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::ValueEnum;
-use clap::builder::{OsStringValueParser, TypedValueParser as _};
+use clap::builder::{OsStringValueParser, PossibleValuesParser, TypedValueParser};
 use fixedmath::I16F16;
 use tracer::unit::{Plan, Termination};
 use wire::boot::PixelOrder;
 
 use crate::firmware::arithmetic::{Arithmetic, Sampler};
 use crate::firmware::board::Board;
-use crate::firmware::{Level, SoftFloat};
+use crate::firmware::{Choice, Level, SoftFloat};
 use crate::platform::workspace::{self, NoWorkspace};
 use crate::scene::{Integrator, MAX_LENGTH, Scale};
 
@@ -103,6 +103,9 @@ pub struct RenderOptions {
     /// Compute in soft float instead of fixed point, by the profile's formulas, in an image that does not fit a core's memory
     #[arg(long, value_name = "f32|f64", value_enum)]
     pub soft_float: Option<SoftFloat>,
+    /// Compute as `precise` does but for one choice, which is the published system's, in an image of its own
+    #[arg(long, value_name = "CHOICE", value_parser = choice(), conflicts_with_all = ["soft_float", "profile"])]
+    pub choice: Option<Choice>,
     /// UDP port of the collector [default: any free one]
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub port: Option<u16>,
@@ -321,6 +324,12 @@ impl From<OsString> for Reference {
     }
 }
 
+/// What `--choice` takes.
+fn choice() -> impl TypedValueParser<Value = Choice> {
+    let words = PossibleValuesParser::new(Choice::ALL.map(Choice::word));
+    words.map(|word| Choice::ALL[Choice::number(Some(&word))])
+}
+
 /// What `--spp` takes.
 pub fn samples_per_pixel(text: &str) -> Result<u32, String> {
     let samples = text
@@ -458,6 +467,7 @@ mod tests {
             (["--profile", "fancy"], "paper, precise"),
             (["--board", "versatilepb,z80"], "versatilepb, mps2-an385"),
             (["--sampler", "halton"], "independent, kronecker"),
+            (["--choice", "roots"], "root, division, directions"),
             (["--integrator", "photons"], "path, next-event"),
             (["--epsilon", "-0.1"], "from 0 on"),
             (["--epsilon", "inf"], "from 0 on"),

@@ -95,6 +95,7 @@ pub fn record(
     let kind = Kind {
         log: None,
         soft_float,
+        choice: None,
     };
     let job = Job::new(&PictureOptions {
         cores: 1,

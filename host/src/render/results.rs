@@ -127,7 +127,10 @@ impl Results<'_> {
         let (compiled, plan) = (&self.job.compiled, &self.job.plan);
         let bar = bar("lockstep", self.collection.film.samples());
         let done = |samples| bar.inc(samples);
-        let rendered = lockstep::render_as(options.profile, options.sampler(), compiled, plan, done);
+        let rendered = match self.origin.choice {
+            Some(choice) => lockstep::render_choice(choice, compiled, plan, done),
+            None => lockstep::render_as(options.profile, options.sampler(), compiled, plan, done),
+        };
         bar.finish_and_clear();
         Some(rendered)
     }
@@ -203,7 +206,7 @@ impl Results<'_> {
             board: self.origin.boards(),
             images: self.origin.images.clone(),
             backend: self.origin.backend.to_owned(),
-            profile: SoftFloat::profile(options.profile, self.origin.soft_float),
+            profile: self.profile(),
             integrator: options.integrator().to_string(),
             sampler: options.sampler().to_string(),
             termination: options.termination.to_string(),
@@ -227,6 +230,14 @@ impl Results<'_> {
                 let cores = self.collection.cores.iter();
                 cores.map(|record| per_core(record, counts)).collect()
             },
+        }
+    }
+
+    /// What the arithmetic is called.
+    fn profile(&self) -> String {
+        match self.origin.choice {
+            Some(choice) => format!("{} but for {}", self.job.options.profile, choice.word()),
+            None => SoftFloat::profile(self.job.options.profile, self.origin.soft_float),
         }
     }
 

@@ -210,7 +210,7 @@ impl TimedPicture {
     pub fn expected_sha256(&self) -> Result<String, RenderError> {
         let job = self.job()?;
         let (profile, sampler) = (self.picture.profile, self.picture.sampler());
-        Ok(direct::film_by(profile, sampler, &job.compiled, &job.plan).sha256())
+        Ok(direct::film_as(profile, sampler, &job.compiled, &job.plan).sha256())
     }
 }
 

@@ -142,8 +142,14 @@ fn course<P: Profile<Random: Clone>>(
     let mut last = None;
     for spp in counts(most) {
         let paired = pair(spp);
-        errors.push((spp.into(), error(&paired.picture.picture, &rendered.estimate)));
-        errors_of_double.push((spp.into(), error(&paired.double.picture, &rendered.estimate)));
+        errors.push((
+            spp.into(),
+            error_beside(&paired.picture.picture, &rendered.estimate),
+        ));
+        errors_of_double.push((
+            spp.into(),
+            error_beside(&paired.double.picture, &rendered.estimate),
+        ));
         last = Some(paired);
     }
     Course {
@@ -154,7 +160,7 @@ fn course<P: Profile<Random: Clone>>(
 }
 
 /// The root of the mean squared difference from the reference, whose own noise is taken off.
-fn error(picture: &Picture, reference: &Estimate) -> f64 {
+pub(crate) fn error_beside(picture: &Picture, reference: &Estimate) -> f64 {
     let variances = reference.variance.iter().flatten();
     let pixels = picture.pixels().iter().flatten();
     let pixels = pixels

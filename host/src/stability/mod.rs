@@ -19,9 +19,12 @@ mod sheet;
 mod table;
 mod vast;
 
+pub(crate) use convergence::error_beside;
+pub(crate) use table::figure;
+
 pub use part::{Effort, Error, Findings, Part, SCENE_FOLDERS, scene_files};
 pub use plot::Plot;
-pub use sheet::Sheet;
+pub use sheet::{Panel, Sheet};
 pub use table::Table;
 
 /// All parts, in the order of `docs/stability.md`.

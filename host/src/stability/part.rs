@@ -51,6 +51,15 @@ impl Effort {
         self.divisor > 1
     }
 
+    /// The same bar, for one of so many parts of the full work.
+    ///
+    /// # Panics
+    /// If there are no parts.
+    #[must_use]
+    pub fn with_divisor(&self, divisor: u64) -> Self {
+        Self::new(divisor, self.bar.clone())
+    }
+
     /// What is to be done of `full` work: at least 1.
     pub fn of(&self, full: u64) -> u64 {
         (full / self.divisor).max(1)

@@ -47,6 +47,21 @@ impl Panel {
         }
     }
 
+    /// The line above it.
+    pub fn caption(&self) -> &str {
+        &self.caption
+    }
+
+    /// Width and height in pixels.
+    pub fn size(&self) -> (u16, u16) {
+        self.size
+    }
+
+    /// Its pixels as a display shows them, row by row from the top.
+    pub fn pixels(&self) -> &[[u8; 3]] {
+        &self.pixels
+    }
+
     /// How much darker (blue) or brighter (red) `picture` is than `other`, in radiance up to `range`, mean of the channels.
     pub(super) fn difference(
         caption: impl Into<String>,

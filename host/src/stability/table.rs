@@ -22,6 +22,26 @@ impl Table {
         }
     }
 
+    /// What it is of.
+    pub fn title(&self) -> &str {
+        &self.title
+    }
+
+    /// What its figures are in.
+    pub fn units(&self) -> &str {
+        &self.units
+    }
+
+    /// The names of its columns.
+    pub fn head(&self) -> &[String] {
+        &self.head
+    }
+
+    /// Its rows.
+    pub fn rows(&self) -> &[Vec<String>] {
+        &self.rows
+    }
+
     /// Adds a row, of as many cells as the head has.
     ///
     /// # Panics
@@ -80,7 +100,7 @@ pub(super) fn share(part: u64, all: u64) -> String {
 }
 
 /// Three figures of a number, or all of a whole one that has no more than six.
-pub(super) fn figure(value: f64) -> String {
+pub(crate) fn figure(value: f64) -> String {
     let magnitude = value.abs();
     if value == 0.0 {
         "0".to_owned()

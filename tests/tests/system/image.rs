@@ -29,6 +29,7 @@ fn recipe(profile: Arithmetic, needs: Capabilities) -> Recipe {
         needs,
         log: None,
         soft_float: None,
+        choice: None,
     }
 }
 

@@ -29,6 +29,7 @@ fn image(board: Board, profile: Arithmetic, log: Option<Level>) -> Image {
         needs: Capabilities::PATHS,
         log,
         soft_float: None,
+        choice: None,
     };
     build(&toolchain(), board, &recipe).unwrap()
 }

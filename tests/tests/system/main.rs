@@ -5,6 +5,7 @@
 
 mod boards;
 
+mod choices;
 mod debugger;
 mod faults;
 mod fleet;
@@ -18,6 +19,7 @@ mod output;
 mod places;
 mod processes;
 mod profile;
+mod report;
 mod scaling;
 mod size;
 mod soft_float;

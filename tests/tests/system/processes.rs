@@ -242,6 +242,7 @@ fn the_collector_takes_cores_that_are_started_elsewhere() {
         needs: Capabilities::PATHS,
         log: None,
         soft_float: None,
+        choice: None,
     };
     let image = firmware::build(&toolchain(), Board::Versatilepb, &recipe).expect("an image");
     let elf = image.elf.to_str().expect("UTF-8");

@@ -4,7 +4,7 @@ mod linear;
 mod room;
 
 pub use linear::Linear;
-pub use room::{Exit, FLAT, Room, RoomNumbers, Wall};
+pub use room::{Exit, FLAT, Room, RoomNumbers, Wall, exit_by};
 
 use crate::arithmetic::Formats;
 use crate::capability::Needs;

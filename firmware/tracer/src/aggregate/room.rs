@@ -100,32 +100,7 @@ impl RoomNumbers for Published {
 impl RoomNumbers for Mixed {
     #[inline]
     fn exit<'r>(room: &'r Room, origin: [I16F16; 3], direction: [I2F30; 3]) -> Option<Exit<'r, Self>> {
-        let (o, d) = (origin.map(I16F16::to_bits), direction.map(I2F30::to_bits));
-        let guess = |axis: usize| {
-            let side = (d[axis] as u32 >> 31) as usize;
-            Guess {
-                distance: room.planes[axis][side].to_bits() - o[axis],
-                speed: d[axis],
-                start: o[axis],
-                walls: &room.walls[axis],
-            }
-        };
-        let nearest = guess(0).or_nearer(guess(1)).or_nearer(guess(2));
-        let wall = &nearest.walls[(nearest.speed as u32 >> 31) as usize];
-        let times = |a: i32, b: i32| i64::from(a) * i64::from(b);
-        let along = times(o[0], d[0]) + times(o[1], d[1]) + times(o[2], d[2]);
-        let centre = wall.place.to_bits();
-        let b = ((times(centre, nearest.speed) - along) >> 30) as i32;
-        let square = times(o[0], o[0]) + times(o[1], o[1]) + times(o[2], o[2]);
-        let power = wall.power.to_bits() - (square + times(wall.twice_back.to_bits(), nearest.start));
-        let t = I16F16::from_bits(b) + Mixed::near_root(I32F32::from_bits(power + times(b, b)));
-        let point = [0, 1, 2].map(|i| origin[i] + Self::scale(t, direction[i]));
-        let within = |i: usize| {
-            let above = point[i].to_bits().wrapping_sub(wall.low[i].to_bits());
-            (above as u32) < wall.extent[i].to_bits() as u32
-        };
-        // A start that rounding has put beyond the wall meets it behind itself.
-        (t >= I16F16::ZERO && within(0) && within(1) && within(2)).then_some(Exit { wall, t, point })
+        exit_by(room, origin, direction, Self::near_root)
     }
 
     #[inline]
@@ -136,6 +111,42 @@ impl RoomNumbers for Mixed {
             I2F30::from_bits(product::wrapping_scaled(from_centre, reciprocal).to_bits())
         })
     }
+}
+
+/// Where a ray meets a wall, in the formats of [`Mixed`], with the root that `root` gives.
+#[inline(always)]
+pub fn exit_by<'r, N: Formats<Length = I16F16>>(
+    room: &'r Room,
+    origin: [I16F16; 3],
+    direction: [I2F30; 3],
+    root: impl FnOnce(I32F32) -> I16F16,
+) -> Option<Exit<'r, N>> {
+    let (o, d) = (origin.map(I16F16::to_bits), direction.map(I2F30::to_bits));
+    let guess = |axis: usize| {
+        let side = (d[axis] as u32 >> 31) as usize;
+        Guess {
+            distance: room.planes[axis][side].to_bits() - o[axis],
+            speed: d[axis],
+            start: o[axis],
+            walls: &room.walls[axis],
+        }
+    };
+    let nearest = guess(0).or_nearer(guess(1)).or_nearer(guess(2));
+    let wall = &nearest.walls[(nearest.speed as u32 >> 31) as usize];
+    let times = |a: i32, b: i32| i64::from(a) * i64::from(b);
+    let along = times(o[0], d[0]) + times(o[1], d[1]) + times(o[2], d[2]);
+    let centre = wall.place.to_bits();
+    let b = ((times(centre, nearest.speed) - along) >> 30) as i32;
+    let square = times(o[0], o[0]) + times(o[1], o[1]) + times(o[2], o[2]);
+    let power = wall.power.to_bits() - (square + times(wall.twice_back.to_bits(), nearest.start));
+    let t = I16F16::from_bits(b) + root(I32F32::from_bits(power + times(b, b)));
+    let point = [0, 1, 2].map(|i| origin[i] + Mixed::scale(t, direction[i]));
+    let within = |i: usize| {
+        let above = point[i].to_bits().wrapping_sub(wall.low[i].to_bits());
+        (above as u32) < wall.extent[i].to_bits() as u32
+    };
+    // A start that rounding has put beyond the wall meets it behind itself.
+    (t >= I16F16::ZERO && within(0) && within(1) && within(2)).then_some(Exit { wall, t, point })
 }
 
 /// A wall that may be the first, as if it were a plane.

@@ -187,7 +187,7 @@ impl Estimator {
             least: noise::FEWEST_UNITS,
         })?;
         let start = Instant::now();
-        let film = direct::film_by(self.profile, self.sampler, &compiled, &plan);
+        let film = direct::film_as(self.profile, self.sampler, &compiled, &plan);
         let rate = film.samples() as f64 / start.elapsed().as_secs_f64();
         Ok((noise, rate))
     }

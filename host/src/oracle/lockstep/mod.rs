@@ -20,7 +20,8 @@ use tracer::scene::All;
 use tracer::unit::Plan;
 
 use self::samples::samples;
-use crate::firmware::arithmetic::{Arithmetic, Sampler, with_profile};
+use crate::firmware::Choice;
+use crate::firmware::arithmetic::{Arithmetic, Sampler, with_choice, with_profile};
 use crate::image::picture::{Estimate, Picture};
 use crate::scene::CompiledScene;
 
@@ -82,6 +83,27 @@ pub fn render_as(
     progress: impl Fn(u64) + Sync,
 ) -> Paired {
     with_profile!(profile, sampler, P => render::<P>(compiled, plan, progress))
+}
+
+/// The same by `precise` but for one choice, which is the published system's.
+pub fn render_choice(
+    choice: Choice,
+    compiled: &CompiledScene,
+    plan: &Plan,
+    progress: impl Fn(u64) + Sync,
+) -> Paired {
+    render_choice_beside(choice, compiled, plan, plan.epsilon, progress)
+}
+
+/// The same beside doubles of another epsilon than `plan`'s.
+pub fn render_choice_beside(
+    choice: Choice,
+    compiled: &CompiledScene,
+    plan: &Plan,
+    epsilon: I16F16,
+    progress: impl Fn(u64) + Sync,
+) -> Paired {
+    with_choice!(choice, P => render_beside::<P>(compiled, plan, epsilon, progress))
 }
 
 /// The same beside doubles of another epsilon than `plan`'s.
