@@ -175,7 +175,7 @@ impl<'a> Ruler<'a> {
 
     /// Multiples of 1, 2 or 5 times a power of ten.
     fn linear_ticks(&self, [low, high]: [f64; 2]) -> Vec<Tick> {
-        let rough = (high - low) / 5.0;
+        let rough = (high - low) / 6.0;
         let power = 10f64.powf(rough.log10().floor());
         let step = [1.0, 2.0, 5.0, 10.0].map(|digit| digit * power);
         let step = step.into_iter().find(|&step| step >= rough).unwrap_or(rough);
@@ -284,7 +284,7 @@ mod tests {
         );
         assert_eq!(
             labels(&Scale::Log, [3.0, 3.0]).len(),
-            5,
+            4,
             "a single value has an axis, too"
         );
     }

@@ -3,7 +3,7 @@
 use maud::{Markup, PreEscaped, html};
 
 use super::axis::{Ruler, Tick};
-use super::labels::{self, places, stacked};
+use super::labels::{self, places};
 use super::marks::{LOOKS, outline};
 use super::{Along, Clock, Line, Plot, Point, Room, Scale, Series};
 
@@ -79,10 +79,7 @@ impl<'a> Frame<'a> {
             Scale::Names(names) => names.iter().map(|name| labels::width(name)).fold(0.0, f64::max) + 16.0,
             _ => 66.0,
         };
-        let ends = plot.series.iter().filter(|series| series.is_joined());
-        let right = ends
-            .map(|series| labels::width(&series.name) + 18.0)
-            .fold(18.0, f64::max);
+        let right = 18.0;
         let top = 10.0
             + LINE * legend_lines(plot, width).len() as f64
             + if plot.clock.is_some() { 2.0 * LINE } else { 0.0 }
@@ -135,7 +132,6 @@ impl<'a> Frame<'a> {
             (self.legend())
             @for series in &self.plot.series { (self.joins(series)) }
             @for series in &self.plot.series { (self.marks(series)) }
-            (self.line_ends())
             (self.names())
             @for series in &self.plot.series { (self.hits(series)) }
         }
@@ -228,7 +224,7 @@ impl<'a> Frame<'a> {
                     Along::Across => {
                         @let x = self.across.place(rule.value);
                         (segment("rule", [x, top], [x, bottom]))
-                        (text("rule-name middle", [x.clamp(left + 40.0, right - 40.0), top - 6.0], &rule.name))
+                        (text("rule-name middle", [self.middle_of(x, &rule.name), top - 6.0], &rule.name))
                     }
                     Along::Upwards => {
                         @let y = self.upwards.place(rule.value);
@@ -238,6 +234,12 @@ impl<'a> Frame<'a> {
                 }
             }
         }
+    }
+
+    /// Where the middle of a text is that should be at `x` and must not leave the drawing.
+    fn middle_of(&self, x: f64, text: &str) -> f64 {
+        let half = labels::width(text) / 2.0 + 4.0;
+        x.min(self.size[0] - half).max(half)
     }
 
     fn legend(&self) -> Markup {
@@ -320,32 +322,6 @@ impl<'a> Frame<'a> {
         )
     }
 
-    /// Names of lines, where these end.
-    fn line_ends(&self) -> Markup {
-        let joined: Vec<&Series> = self
-            .plot
-            .series
-            .iter()
-            .filter(|series| series.is_joined())
-            .collect();
-        let ends: Vec<[f64; 2]> = joined
-            .iter()
-            .filter_map(|series| series.points.last())
-            .map(|point| self.place(point))
-            .collect();
-        let wanted: Vec<f64> = ends.iter().map(|end| end[1] + 4.0).collect();
-        let heights = stacked(&wanted, [self.inner[1] + 8.0, self.inner[3]]);
-        html! {
-            @for ((series, end), height) in joined.iter().zip(&ends).zip(heights) {
-                @let x = self.inner[2] + 8.0;
-                @if (height - 4.0 - end[1]).abs() > 3.0 || end[0] + 12.0 < self.inner[2] {
-                    (segment("leader", [end[0] + 6.0, end[1]], [x - 3.0, height - 4.0]))
-                }
-                (text("entry", [x, height], &series.name))
-            }
-        }
-    }
-
     /// Names of points.
     fn names(&self) -> Markup {
         let points = || {
@@ -375,11 +351,6 @@ impl<'a> Frame<'a> {
 }
 
 impl Series {
-    /// Whether its name stands at the end of its line.
-    fn is_joined(&self) -> bool {
-        self.line == Line::Solid
-    }
-
     fn is_marked(&self) -> bool {
         self.line != Line::Front
     }
@@ -390,15 +361,11 @@ impl Series {
     }
 }
 
-/// The legend's lines: where the entries of each start. None where lines have their names at their ends, or one series needs none.
+/// The legend's lines: where the entries of each start. One series needs none.
 fn legend_lines(plot: &Plot, width: f64) -> Vec<Vec<(f64, &Series)>> {
-    let entries: Vec<&Series> = plot
-        .series
-        .iter()
-        .filter(|series| series.line == Line::None)
-        .collect();
+    let entries: Vec<&Series> = plot.series.iter().filter(|series| series.is_marked()).collect();
     let mut lines: Vec<Vec<(f64, &Series)>> = Vec::new();
-    if entries.is_empty() || plot.series.len() < 2 {
+    if entries.len() < 2 {
         return lines;
     }
     let mut x = width;

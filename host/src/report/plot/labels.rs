@@ -108,24 +108,6 @@ fn covers(one: &Box, other: &Box) -> bool {
     one[0] < other[2] && other[0] < one[2] && one[1] < other[3] && other[1] < one[3]
 }
 
-/// Heights of texts one above the other, each as near to where it should be as the others leave it.
-pub(super) fn stacked(wanted: &[f64], [top, bottom]: [f64; 2]) -> Vec<f64> {
-    let mut order: Vec<usize> = (0..wanted.len()).collect();
-    order.sort_by(|&one, &other| wanted[one].total_cmp(&wanted[other]));
-    let mut heights = wanted.to_vec();
-    let mut last = f64::NEG_INFINITY;
-    for &index in &order {
-        heights[index] = heights[index].max(last + LINE).max(top);
-        last = heights[index];
-    }
-    let mut next = f64::INFINITY;
-    for &index in order.iter().rev() {
-        heights[index] = heights[index].min(next - LINE).min(bottom);
-        next = heights[index];
-    }
-    heights
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -163,11 +145,5 @@ mod tests {
             places(&[[5.0, 5.0]], &[Some("long name")], [0.0, 0.0, 20.0, 20.0]),
             [None]
         );
-    }
-
-    #[test]
-    fn stacked_texts_keep_apart_and_within() {
-        let heights = stacked(&[50.0, 52.0, 199.0, 10.0], [20.0, 195.0]);
-        assert_eq!(heights, [50.0, 63.0, 195.0, 20.0]);
     }
 }

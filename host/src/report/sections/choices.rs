@@ -122,7 +122,7 @@ struct Job<'a> {
 }
 
 fn make(workshop: &Workshop<'_>, effort: &Effort) -> Result<Section, Error> {
-    let (size, spp) = workshop.either(([64, 48], 4096), ([8, 6], 64));
+    let (size, spp) = workshop.either(([64, 48], 1024), ([8, 6], 64));
     let wanted: Vec<Variant> = match workshop.quick {
         true => QUICK.map(|index| VARIANTS[index]).to_vec(),
         false => VARIANTS.to_vec(),
@@ -188,8 +188,8 @@ impl Variant {
         let folder = tempfile::tempdir()?;
         let size = workshop.either(
             Size {
-                width: 64,
-                height: 48,
+                width: 32,
+                height: 24,
             },
             Size { width: 8, height: 6 },
         );
@@ -435,7 +435,7 @@ fn errors(found: &[Found]) -> Plot {
     scatter(
         "choices-error",
         "What a choice costs, and its error",
-        "root mean squared error without noise, radiance",
+        "rms error without noise, radiance",
         found,
         Found::error_at_most,
     )

@@ -173,10 +173,10 @@ fn plot(group: &[&Row]) -> Option<Plot> {
 
 /// What errors are counted in.
 fn ulp(ulp: &str) -> String {
-    if ulp == "2^-16" {
-        "ulp".to_owned()
-    } else {
-        format!("ulp of {ulp}")
+    match ulp {
+        "2^-16" => "ulp".to_owned(),
+        "2^-0" => "whole numbers".to_owned(),
+        ulp => format!("ulp of {ulp}"),
     }
 }
 

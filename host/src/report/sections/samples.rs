@@ -11,7 +11,7 @@ use crate::bench::samples::Row;
 use crate::firmware::arithmetic::Sampler;
 use crate::firmware::board::Board;
 use crate::scene::Integrator;
-use crate::stability::Effort;
+use crate::stability::{Effort, figure as digits};
 
 /// The part.
 pub(super) const PART: Part = Part {
@@ -88,7 +88,7 @@ fn prose(rows: &[Row]) -> Markup {
              comes after: they are quicker, and darker." }
         @for board in Board::ALL {
             @if let Some((row, efficiency)) = best(board) {
-                p { "On the " (board.processor()) " the most efficient is " strong { (kind(row)) } ": " (number(efficiency))
+                p { "On " (board.processor()) " the most efficient is " strong { (kind(row)) } ": " (number(efficiency))
                     " times fewer cycles than " code { "paper" } " for a picture of the same noise." }
             }
         }
@@ -100,9 +100,13 @@ fn kind(row: &Row) -> String {
     let ways = [
         (row.integrator == Integrator::NextEvent).then_some("next event"),
         (row.sampler == Sampler::Kronecker).then_some("Kronecker"),
-        (row.termination != "roulette").then_some(row.termination.as_str()),
     ];
-    let ways: Vec<&str> = ways.into_iter().flatten().collect();
+    let mut ways: Vec<String> = ways.into_iter().flatten().map(str::to_owned).collect();
+    ways.extend(
+        row.termination
+            .strip_prefix("depth:")
+            .map(|depth| format!("depth {depth}")),
+    );
     if ways.is_empty() {
         row.profile.clone()
     } else {
@@ -126,7 +130,7 @@ fn by_kind(rows: &[Row], title: &str, name: &str, value: impl Fn(&Row) -> Option
             Some(Point::new("", [value(row)?, place as f64]))
         });
         let points: Vec<Point> = points.collect();
-        let name = format!("{} ({board})", board.processor());
+        let name = format!("{board}, {}", board.processor());
         (!points.is_empty()).then_some(Series {
             name,
             points,
@@ -165,7 +169,7 @@ fn factors(rows: &[Row], published: f64) -> Table {
     ));
     let figure = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), number);
     let share = |share: Option<f64>, error: Option<f64>| match (share, error) {
-        (Some(share), Some(error)) => format!("{:+.3} ± {:.3}", 100.0 * share, 100.0 * error),
+        (Some(share), Some(error)) => format!("{} ± {}", digits(100.0 * share), digits(100.0 * error)),
         _ => "-".to_owned(),
     };
     for row in rows.iter().filter(|row| row.board == Board::Versatilepb) {

@@ -1,10 +1,10 @@
 //! Error against time: how good a picture is after so many cycles of a core.
 
-use floating::Lockstep;
+mod systems;
+
 use maud::{Markup, html};
-use tracer::kronecker::Stratified;
-use tracer::profile::{Paper, Precise, Profile};
-use tracer::unit::{Plan, Termination};
+
+use systems::{SYSTEMS, System, plan};
 
 use super::super::part::{Error, Part, SCENE, Workshop};
 use super::super::picture::Image;
@@ -13,14 +13,13 @@ use super::super::section::{Figure, Section};
 use super::super::table::Table;
 use super::CLOCK;
 use crate::bench::samples::Row;
-use crate::firmware::arithmetic::Arithmetic;
 use crate::firmware::board::Board;
 use crate::image::picture::{Estimate, Picture};
 use crate::oracle::compare::compare;
-use crate::oracle::reference::cache;
-use crate::oracle::{direct, lockstep, reference};
+use crate::oracle::reference;
+use crate::oracle::reference::{Rendered, cache};
 use crate::platform::workspace;
-use crate::scene::{CompiledScene, Integrator, Scene, compile, samples_per_unit};
+use crate::scene::{CompiledScene, Integrator, Scene, compile};
 use crate::stability::{Effort, error_beside, figure};
 
 /// The part.
@@ -35,87 +34,12 @@ pub(in crate::report) const TELLING: &str = "error-against-time-rmse";
 
 /// Pixels of the picture that the time's scale is for: the default size of `cargo xtask render`.
 const PIXELS: f64 = 256.0 * 192.0;
+/// Samples a pixel by which the floor is found.
+const PAIRED: u32 = 4096;
+/// Floors that are so many times below the best picture are not drawn.
+const FAR_BELOW: f64 = 30.0;
 /// Standard errors below which a bias is not told from none.
 const SURE: f64 = 2.0;
-
-/// A way to compute the picture.
-struct System {
-    name: &'static str,
-    /// As the rows of samples call it.
-    row: RowName,
-    integrator: Integrator,
-    arithmetic: Arithmetic,
-    /// A picture, beside the same samples in double precision.
-    render: fn(&CompiledScene, &Plan, &Effort) -> lockstep::Paired,
-    /// The picture alone, and what its film's sums hash to.
-    film: fn(&CompiledScene, &Plan) -> (Picture, String),
-    /// Whether there is an arithmetic to tell from double precision.
-    is_exact: bool,
-}
-
-/// Profile, integrator and sampler.
-type RowName = [&'static str; 3];
-
-fn paired<P: Profile<Random: Clone>>(
-    compiled: &CompiledScene,
-    plan: &Plan,
-    effort: &Effort,
-) -> lockstep::Paired {
-    lockstep::render::<P>(compiled, plan, |samples| effort.done(2 * samples))
-}
-
-fn film<P: Profile>(compiled: &CompiledScene, plan: &Plan) -> (Picture, String) {
-    let film = direct::film::<P>(compiled, plan);
-    (film.picture(), film.sha256())
-}
-
-const SYSTEMS: [System; 5] = [
-    System {
-        name: "precise, next event, Kronecker",
-        row: ["precise", "next-event", "kronecker"],
-        integrator: Integrator::NextEvent,
-        arithmetic: Arithmetic::Precise,
-        render: paired::<Stratified<Precise>>,
-        film: film::<Stratified<Precise>>,
-        is_exact: false,
-    },
-    System {
-        name: "precise",
-        row: ["precise", "path", "independent"],
-        integrator: Integrator::Path,
-        arithmetic: Arithmetic::Precise,
-        render: paired::<Precise>,
-        film: film::<Precise>,
-        is_exact: false,
-    },
-    System {
-        name: "paper",
-        row: ["paper", "path", "independent"],
-        integrator: Integrator::Path,
-        arithmetic: Arithmetic::Paper,
-        render: paired::<Paper>,
-        film: film::<Paper>,
-        is_exact: false,
-    },
-    System {
-        name: "soft float, single",
-        row: ["precise in f32", "path", "independent"],
-        integrator: Integrator::Path,
-        arithmetic: Arithmetic::Precise,
-        render: paired::<Lockstep<Precise, f32>>,
-        film: film::<Lockstep<Precise, f32>>,
-        is_exact: false,
-    },
-    System {
-        name: "soft float, double",
-        row: ["precise in f64", "path", "independent"],
-        integrator: Integrator::Path,
-        arithmetic: Arithmetic::Precise,
-        render: paired::<Lockstep<Precise, f64>>,
-        film: film::<Lockstep<Precise, f64>>,
-        is_exact: true,
-    },
-];
 
 /// What is rendered.
 struct Job {
@@ -134,7 +58,8 @@ fn make(workshop: &Workshop<'_>, effort: &Effort) -> Result<Section, Error> {
         most,
     };
     let compared = agreed(workshop, rows)?;
-    let reference = job.reference(effort);
+    let reference = job.reference();
+    effort.expect(job.work());
     let courses: Vec<Course> = SYSTEMS
         .iter()
         .map(|system| Course::of(system, &job, rows, &reference, effort))
@@ -205,19 +130,6 @@ fn agreed(workshop: &Workshop<'_>, rows: &[Row]) -> Result<String, Error> {
     ))
 }
 
-/// The plan of a picture as cores have it.
-fn plan(arithmetic: Arithmetic, scene: &Scene, [width, height]: [u16; 2], spp: u32, seed: u64) -> Plan {
-    Plan {
-        width,
-        height,
-        spp,
-        samples_per_unit: samples_per_unit(scene, spp, Termination::Roulette),
-        seed,
-        termination: Termination::Roulette,
-        epsilon: arithmetic.epsilon(scene.scale().magnification),
-    }
-}
-
 impl Job {
     /// 4, 16, ... samples a pixel.
     fn counts(&self) -> impl Iterator<Item = u32> {
@@ -232,10 +144,19 @@ impl Job {
         compile(&self.scene, self.size[0], self.size[1], system.integrator)
     }
 
+    /// Samples a pixel of the pictures beside their doubles.
+    fn paired(&self) -> u32 {
+        self.most.min(PAIRED)
+    }
+
+    /// What is to be done but for the reference.
+    fn work(&self) -> u64 {
+        let samples = self.counts().sum::<u32>() + 2 * self.paired();
+        self.pixels() * SYSTEMS.len() as u64 * u64::from(samples)
+    }
+
     /// The independent reference of as many samples as the best picture has, kept among the user's caches.
-    fn reference(&self, effort: &Effort) -> Estimate {
-        let samples = self.counts().sum::<u32>();
-        effort.expect(self.pixels() * (u64::from(self.most) + 2 * SYSTEMS.len() as u64 * u64::from(samples)));
+    fn reference(&self) -> Rendered {
         let job = reference::Job {
             width: self.size[0],
             height: self.size[1],
@@ -243,9 +164,28 @@ impl Job {
             termination: reference::Termination::Roulette,
             seed: 1,
         };
-        let (rendered, _origin) = cache::reference(cache::folder(None).as_deref(), &self.scene, &job, |_| ());
-        effort.done(self.pixels() * u64::from(self.most));
-        rendered.estimate
+        cache::reference(cache::folder(None).as_deref(), &self.scene, &job, |_| ()).0
+    }
+}
+
+/// A picture with the noise that so many of its samples have by the reference's word.
+fn with_noise(picture: Picture, system: &System, spp: u32, reference: &Rendered) -> Estimate {
+    let of_a_sample: Vec<[f64; 3]> = match system.integrator {
+        Integrator::Path => reference.plain_variance.clone(),
+        // The reference looks for light, too.
+        Integrator::NextEvent => {
+            let samples = f64::from(reference.estimate.spp.unwrap_or_default());
+            let variance = reference.estimate.variance.iter().flatten();
+            variance.map(|variance| variance.map(|v| v * samples)).collect()
+        }
+    };
+    let variance = of_a_sample
+        .into_iter()
+        .map(|variance| variance.map(|v| v / f64::from(spp)));
+    Estimate {
+        picture,
+        variance: Some(variance.collect()),
+        spp: Some(spp),
     }
 }
 
@@ -273,25 +213,23 @@ impl Course {
         system: &'static System,
         job: &Job,
         rows: &[Row],
-        reference: &Estimate,
+        reference: &Rendered,
         effort: &Effort,
     ) -> Result<Self, Error> {
         let compiled = job.compiled(system);
-        let (mut steps, mut last) = (Vec::new(), None);
+        let plan = |spp| plan(system.arithmetic, &job.scene, job.size, spp, 1);
+        let mut steps = Vec::new();
         for spp in job.counts() {
-            let paired = (system.render)(
-                &compiled,
-                &plan(system.arithmetic, &job.scene, job.size, spp, 1),
-                effort,
-            );
-            let found = compare(&paired.picture, reference)?;
+            let (picture, _) = (system.film)(&compiled, &plan(spp));
+            effort.done(job.pixels() * u64::from(spp));
+            let picture = with_noise(picture, system, spp, reference);
+            let found = compare(&picture, &reference.estimate)?;
             let bias = [found.bias, found.bias_standard_error].map(Option::unwrap_or_default);
-            let error = error_beside(&paired.picture.picture, reference);
+            let error = error_beside(&picture.picture, &reference.estimate);
             steps.push((spp, Step { error, bias }));
-            last = Some(paired);
         }
-        let last = last.ok_or("no picture was rendered")?;
-        let (picture, double) = last.difference();
+        let paired = (system.paired)(&compiled, &plan(job.paired()), effort);
+        let (picture, double) = paired.difference();
         let lockstep = compare(&picture, &double)?;
         Ok(Self {
             system,
@@ -352,8 +290,15 @@ fn errors(courses: &[Course], job: &Job) -> Plot {
         courses,
         |step| (step.error, false),
     );
+    let best = courses
+        .iter()
+        .flat_map(|course| &course.steps)
+        .map(|(_, step)| step.error)
+        .fold(f64::INFINITY, f64::min);
     let has_floor = |course: &&Course| {
-        !course.system.is_exact && course.system.integrator == Integrator::Path && course.floor[0] > 0.0
+        !course.system.is_exact
+            && course.system.integrator == Integrator::Path
+            && course.floor[0] > best / FAR_BELOW
     };
     let rules = courses.iter().filter(has_floor).map(|course| Rule {
         along: Along::Upwards,
@@ -363,7 +308,7 @@ fn errors(courses: &[Course], job: &Job) -> Plot {
     Plot {
         about: format!(
             "The Cornell box from 4 to {} samples a pixel, beside an independent picture in double precision. Noise alone falls by half with each \
-             fourfold time; a floor is what the arithmetic leaves however long it takes.",
+             fourfold time; a floor is what the arithmetic leaves however long it takes; floors far below the best picture are in the table.",
             number(f64::from(job.most))
         ),
         rules: rules.collect(),
