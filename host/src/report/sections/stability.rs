@@ -25,7 +25,7 @@ const MEASURED: [&str; 5] = [
 ];
 /// One of so many parts of the full work.
 const SHARE: u64 = 100;
-const QUICK_SHARE: u64 = 1000;
+const QUICK_SHARE: u64 = 4000;
 
 fn make(workshop: &Workshop<'_>, effort: &Effort) -> Result<Section, Error> {
     let share = workshop.either(SHARE, QUICK_SHARE);

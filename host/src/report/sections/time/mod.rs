@@ -51,7 +51,7 @@ struct Job {
 
 fn make(workshop: &Workshop<'_>, effort: &Effort) -> Result<Section, Error> {
     let rows = workshop.samples()?;
-    let (size, most) = workshop.either(([32, 24], 1 << 16), ([8, 6], 64));
+    let (size, most) = workshop.either(([24, 18], 1 << 16), ([8, 6], 64));
     let job = Job {
         scene: Scene::load(&workspace::file(SCENE)?)?,
         size,
