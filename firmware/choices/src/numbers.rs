@@ -448,6 +448,10 @@ impl<S: Switch> LightNumbers for Varied<S> {
         Mixed::cone(radius, square)
     }
 
+    fn stored_cone(spread: I2F30) -> I2F30 {
+        Mixed::stored_cone(spread)
+    }
+
     fn in_cone(cone: I2F30, fraction: U0F32) -> Option<[I2F30; 3]> {
         Mixed::in_cone(cone, fraction).map(Self::all_kept)
     }
