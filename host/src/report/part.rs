@@ -75,7 +75,7 @@ impl<'a> Workshop<'a> {
         Ok(Series {
             scene: workspace::file(SCENE)?,
             boards: self.either(Board::ALL.to_vec(), vec![Board::Versatilepb]),
-            size: self.either(size(32, 24), size(8, 6)),
+            size: self.either(size(64, 48), size(8, 6)),
             spp: self.either(64, 16),
             reference_spp: self.either(512, 64),
             noise_spp: self.either(4096, 256),

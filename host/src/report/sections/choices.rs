@@ -188,8 +188,8 @@ impl Variant {
         let folder = tempfile::tempdir()?;
         let size = workshop.either(
             Size {
-                width: 32,
-                height: 24,
+                width: 64,
+                height: 48,
             },
             Size { width: 8, height: 6 },
         );

@@ -34,6 +34,9 @@ pub(in crate::report) const TELLING: &str = "error-against-time-rmse";
 
 /// Pixels of the picture that the time's scale is for: the default size of `cargo xtask render`.
 const PIXELS: f64 = 256.0 * 192.0;
+/// Pixels of the pictures that are compared. Smaller ones have pixels so large that rays of the top row start above the ceiling, and there is no
+/// truth of what those see.
+const SIZE: [u16; 2] = [48, 32];
 /// Samples a pixel by which the floor is found.
 const PAIRED: u32 = 4096;
 /// Floors that are so many times below the best picture are not drawn.
@@ -51,7 +54,7 @@ struct Job {
 
 fn make(workshop: &Workshop<'_>, effort: &Effort) -> Result<Section, Error> {
     let rows = workshop.samples()?;
-    let (size, most) = workshop.either(([24, 18], 1 << 16), ([8, 6], 64));
+    let (size, most) = workshop.either((SIZE, 1 << 16), ([8, 6], 64));
     let job = Job {
         scene: Scene::load(&workspace::file(SCENE)?)?,
         size,
