@@ -29,6 +29,8 @@ pub(super) const PART: Part = Part {
 const SIZE: [u16; 2] = [48, 32];
 /// Samples a pixel; `paper` takes a quarter.
 const SPP: u64 = 4096;
+/// What the reference knows of the noise of rare, bright paths it has of as many samples as this at least.
+const LEAST_REFERENCE: u32 = 64;
 /// What `precise` must keep to, as a share of a picture's mean: its bias from double precision, and what a furnace may lose or gain.
 const BIAS: f64 = 1e-4;
 const ENERGY: f64 = 2e-4;
@@ -127,7 +129,7 @@ impl Found {
         let done = |samples| effort.done(samples);
         let precise = lockstep::render::<Precise>(&compiled, &plan(Arithmetic::Precise, spp), done);
         let paper = lockstep::render::<Paper>(&compiled, &plan(Arithmetic::Paper, spp / 4), done);
-        let rendered = reference(effort, scene, SIZE, spp);
+        let rendered = reference(effort, scene, SIZE, spp.max(LEAST_REFERENCE));
         let film = direct::film::<Precise>(&compiled, &plan(Arithmetic::Precise, 64));
         Ok(Self {
             precise: Rendering::of(&precise, &rendered)?,

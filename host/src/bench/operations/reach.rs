@@ -130,8 +130,8 @@ impl Code {
     }
 }
 
-/// Where a function's branches lead. A constant between the instructions may look like one, but hardly leads to where a
-/// function starts.
+/// Where a function's branches lead; to Thumb code, whose addresses are odd, by `BLX` (*ARM Architecture Reference Manual*, ARM DDI 0100I,
+/// A4.1.8). A constant between the instructions may look like one, but hardly leads to where a function starts.
 fn a32_targets(address: u64, code: &[u8]) -> Vec<u64> {
     const BRANCH: u32 = 0b101 << 25;
     const KIND: u32 = 0b111 << 25;
@@ -141,7 +141,10 @@ fn a32_targets(address: u64, code: &[u8]) -> Vec<u64> {
         let word = u32::from_le_bytes(word);
         // The distance in words from two instructions on, in 24 bits.
         let distance = i64::from((word << 8) as i32 >> 6) + 8;
-        (word & KIND == BRANCH).then(|| at.wrapping_add_signed(distance))
+        let target = at.wrapping_add_signed(distance);
+        let exchanges = word >> 28 == 0xf;
+        let half = u64::from(word >> 24 & 1) * 2;
+        (word & KIND == BRANCH).then_some(if exchanges { (target + half) | 1 } else { target })
     });
     targets.collect()
 }
@@ -232,6 +235,26 @@ mod tests {
         );
         assert_eq!(code.from(16).expect("a function").bytes, 4);
         assert_eq!(code.from(4), None);
+    }
+
+    #[test]
+    fn calls_lead_from_a32_to_thumb() {
+        let function = |name: &str, code: &[u8]| Function {
+            name: name.to_owned(),
+            code: code.to_vec(),
+        };
+        // At 0: blx 14, and at 4: blx 12, which differ by a half word; at 12 and 14: bx lr.
+        let caller = [0xfb00_0001u32, 0xfa00_0000].map(u32::to_le_bytes).concat();
+        let code = Code {
+            functions: BTreeMap::from([
+                (0, function("a32", &caller)),
+                (13, function("thumb", &[0x70, 0x47])),
+                (15, function("next", &[0x70, 0x47])),
+            ]),
+            tables: BTreeMap::new(),
+        };
+        let reach = code.from(0).expect("a function");
+        assert_eq!(reach.symbols, ["a32", "thumb", "next"]);
     }
 
     #[test]
