@@ -68,6 +68,14 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
             "--no-fail-fast",
             "--package",
             "whole-system",
+            "--test",
+            "stability",
+            "--test",
+            "kinds",
+            "--test",
+            "system",
+            "--test",
+            "truth",
             "--",
             // Tests on the cores report one by one, and others give their figures.
             "--show-output",
@@ -115,13 +123,13 @@ fn firmware_steps(toolchain: &Toolchain, scene: &Scene) -> anyhow::Result<Vec<Fo
     step("firmware", || size::measure(toolchain, scene))
 }
 
-/// Lints the boards' crates with the compiler that builds them, without a log and with all of it.
+/// Lints the boards' crates with the compiler that builds them: all of them with a log, and one without, where its macros are empty.
 fn lint_firmware(toolchain: &Toolchain, scene: &Scene) -> anyhow::Result<()> {
     let needs = compile(scene, 4, 3, Integrator::Path)
         .needs
         .with(Capability::Roulette);
-    let both = |board| [(board, None), (board, Some(Level::Trace))];
-    for (board, log) in Board::ALL.into_iter().flat_map(both) {
+    let logging = Board::ALL.map(|board| (board, Some(Level::Trace)));
+    for (board, log) in logging.into_iter().chain([(Board::Versatilepb, None)]) {
         let recipe = Recipe {
             profile: Arithmetic::Precise,
             needs,

@@ -5,7 +5,6 @@
 
 mod boards;
 
-mod choices;
 mod debugger;
 mod faults;
 mod fleet;
@@ -19,8 +18,6 @@ mod output;
 mod places;
 mod processes;
 mod profile;
-mod report;
-mod scaling;
 mod size;
 mod soft_float;
 mod trace;

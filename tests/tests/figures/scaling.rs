@@ -95,8 +95,9 @@ fn virtual_time_is_the_same_each_time() {
         }
         for key in keys {
             let apart = number(one, key) / number(other, key) - 1.0;
-            // A unit is known to a tick, a five-thousandth of the smallest.
-            assert!(apart.abs() < 2e-4, "{key}: {one} and {other}");
+            // A unit is known to a tick, a five-thousandth of the smallest; where two cores are done within one, it decides which gets the
+            // next unit, and the last of so few units ends the later for it. Seen: 5.6e-4.
+            assert!(apart.abs() < 2e-3, "{key}: {one} and {other}");
         }
     }
 }
