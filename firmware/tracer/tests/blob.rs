@@ -21,6 +21,27 @@ const HEADER: usize = size_of::<Header>();
 const SPHERE: usize = size_of::<SolidSphere>();
 const MATERIAL: usize = size_of::<MaterialRecord>();
 
+/// Where a header has its counts of emitters that are balls, and of guides.
+const BALLS_AT: usize = 14;
+const GUIDES_AT: usize = 16;
+
+/// A scene with these records behind it, of a kind whose count is at `place` of its header, that needs all but what it is `without`.
+fn with_records<T: bytemuck::NoUninit>(
+    plain: &Blob,
+    place: usize,
+    records: &[T],
+    without: &[Capability],
+) -> Blob {
+    let mut bytes = [plain.bytes(), bytemuck::cast_slice(records)].concat();
+    bytes[place] = records.len() as u8;
+    let mut blob = Blob(vec![0; bytes.len() / 8]);
+    let without = without.iter().chain(&[Capability::Room, Capability::Coarse]);
+    let needs = without.fold(Capabilities::ALL, |needs, &capability| needs.without(capability));
+    bytes[4..8].copy_from_slice(bytemuck::bytes_of(&needs));
+    blob.bytes_mut().copy_from_slice(&bytes);
+    blob
+}
+
 fn counts(blob: &Blob, image: Capabilities) -> Result<(usize, usize), BlobError> {
     let primitives = Scene::view(blob.bytes(), image)?.aggregate.primitives;
     Ok((primitives.hollow_spheres.len(), primitives.solid_spheres.len()))
@@ -179,15 +200,7 @@ fn emitters_are_of_a_kind_and_a_material_that_there_is() {
         ..BallLight::zeroed()
     };
     let with = |light: BallLight, without: &[Capability]| {
-        let mut bytes = [plain.bytes(), bytemuck::bytes_of(&light)].concat();
-        bytes[14] = 1;
-        let mut blob = Blob(vec![0; bytes.len() / 8]);
-        let needs = without
-            .iter()
-            .fold(Capabilities::ALL, |needs, &capability| needs.without(capability));
-        let needs = needs.without(Capability::Room).without(Capability::Coarse);
-        bytes[4..8].copy_from_slice(bytemuck::bytes_of(&needs));
-        blob.bytes_mut().copy_from_slice(&bytes);
+        let blob = with_records(&plain, BALLS_AT, &[light], without);
         Scene::view(blob.bytes(), Capabilities::ALL).map(|scene| scene.lights.balls == [light])
     };
     assert_eq!(with(light, &[]), Ok(true));
@@ -244,15 +257,7 @@ fn guides_are_sound() {
         ..Guide::zeroed()
     };
     let with = |guides: &[Guide], without: &[Capability]| {
-        let mut bytes = [plain.bytes(), bytemuck::cast_slice(guides)].concat();
-        bytes[16] = guides.len() as u8;
-        let mut blob = Blob(vec![0; bytes.len() / 8]);
-        let needs = without
-            .iter()
-            .fold(Capabilities::ALL, |needs, &capability| needs.without(capability));
-        let needs = needs.without(Capability::Room).without(Capability::Coarse);
-        bytes[4..8].copy_from_slice(bytemuck::bytes_of(&needs));
-        blob.bytes_mut().copy_from_slice(&bytes);
+        let blob = with_records(&plain, GUIDES_AT, guides, without);
         Scene::view(blob.bytes(), Capabilities::ALL).map(|scene| scene.lights.guides == guides)
     };
     assert_eq!(with(&[guide; MAX_GUIDES], &[]), Ok(true));

@@ -10,3 +10,4 @@ mod moments;
 pub mod noise;
 pub mod reference;
 pub mod shortcuts;
+pub mod spectrum;

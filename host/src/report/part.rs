@@ -5,6 +5,8 @@ use std::sync::atomic::AtomicBool;
 
 use super::section::Section;
 use crate::bench::samples::{self, Kinds, Row, Series};
+use crate::bench::scaling::published::CORES;
+use crate::bench::scaling::{self, Experiment, Outcome};
 use crate::firmware::board::Board;
 use crate::platform::setup::Install;
 use crate::platform::workspace;
@@ -33,10 +35,14 @@ pub struct Workshop<'a> {
     /// What an interruption sets.
     pub interrupted: &'a AtomicBool,
     rows: OnceCell<Vec<Row>>,
+    scaling: OnceCell<Outcome>,
 }
 
 /// The scene of all that is measured on cores.
 pub(super) const SCENE: &str = "scenes/cornell.toml";
+
+/// The size of a quick run's pictures.
+const QUICK_SIZE: Size = Size { width: 8, height: 6 };
 
 impl<'a> Workshop<'a> {
     /// A workshop in which nothing has been measured.
@@ -46,6 +52,7 @@ impl<'a> Workshop<'a> {
             install,
             interrupted,
             rows: OnceCell::new(),
+            scaling: OnceCell::new(),
         }
     }
 
@@ -63,6 +70,28 @@ impl<'a> Workshop<'a> {
         Ok(self.rows.get_or_init(|| rows))
     }
 
+    /// What `cargo xtask bench scaling` measures, but that larger units than the smallest are not run.
+    pub fn scaling(&self) -> Result<&Outcome, Error> {
+        if let Some(outcome) = self.scaling.get() {
+            return Ok(outcome);
+        }
+        let scene = workspace::file(SCENE)?;
+        let experiment = if self.quick {
+            Experiment {
+                energy: Some((QUICK_SIZE, 64)),
+                ..Experiment::quick(scene, vec![1, 2], self.install)
+            }
+        } else {
+            Experiment::full(scene, vec![1, 2, 4, 8, 16, 32, 64, CORES], self.install)
+        };
+        let experiment = Experiment {
+            runs_larger: false,
+            ..experiment
+        };
+        let outcome = scaling::measure(&experiment, self.interrupted)?;
+        Ok(self.scaling.get_or_init(|| outcome))
+    }
+
     /// The version of the compiler that made the images.
     pub fn compiler(&self) -> Result<String, Error> {
         let known = self.samples()?.iter().find_map(|row| row.compiler.clone());
@@ -75,7 +104,7 @@ impl<'a> Workshop<'a> {
         Ok(Series {
             scene: workspace::file(SCENE)?,
             boards: self.either(Board::ALL.to_vec(), vec![Board::Versatilepb]),
-            size: self.either(size(64, 48), size(8, 6)),
+            size: self.either(size(64, 48), QUICK_SIZE),
             spp: self.either(64, 16),
             reference_spp: self.either(512, 64),
             noise_spp: self.either(4096, 256),

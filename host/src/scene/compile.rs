@@ -119,10 +119,11 @@ pub fn compile(scene: &Scene, width: u16, height: u16, integrator: Integrator) -
     let (mut emitters, mut guides) = (Emitters::default(), Guides::default());
     if integrator == Integrator::NextEvent {
         let records = proved.records();
-        let has_all_shapes = !hollow.is_empty() && !vast.is_empty();
-        emitters = Emitters::of(&spheres, &records, &extent, MAX_LIGHT_BYTES, !has_all_shapes);
+        // With shapes of all kinds an image has no room for balls that are looked for, nor for guides.
+        let is_crowded = !hollow.is_empty() && !vast.is_empty();
+        emitters = Emitters::of(&spheres, &records, &extent, MAX_LIGHT_BYTES, !is_crowded);
         // A core's code memory holds one of them.
-        if emitters.balls.is_empty() && !has_all_shapes {
+        if emitters.balls.is_empty() && !is_crowded {
             guides = Guides::of(&spheres, &records, &emitters, &extent);
             guides.compensate(&mut materials, &mut emitters);
         }

@@ -9,11 +9,11 @@ use crate::scene::{CompiledScene, Integrator, Scene, compile};
 
 const CAMERA: &str = "format = 1\n[camera]\nposition = [0, 0, 0]\ndirection = [0, 0, -1]\nplane_height = 1\n";
 
-fn sphere(name: &str, centre: [f64; 3], radius: f64, more: &str) -> String {
+pub(super) fn sphere(name: &str, centre: [f64; 3], radius: f64, more: &str) -> String {
     format!("[[sphere]]\nname = \"{name}\"\ncentre = {centre:?}\nradius = {radius}\n{more}\n")
 }
 
-fn compiled(spheres: &[String]) -> CompiledScene {
+pub(super) fn compiled(spheres: &[String]) -> CompiledScene {
     let text = format!("{CAMERA}{}", spheres.concat());
     let scene = Scene::parse("lights.toml", &text).unwrap_or_else(|error| panic!("{error}"));
     compile(&scene, 64, 48, Integrator::NextEvent)
@@ -30,8 +30,8 @@ fn counts(compiled: &CompiledScene) -> (usize, usize) {
 }
 
 const ROOM: &str = "hollow = true\ndiffuse = [0.5, 0.5, 0.5]";
-const LAMP: &str = "emission = [9, 9, 9]\ndiffuse = [0, 0, 0]";
-const GLASS: &str = "glass = [0.9, 0.9, 0.9]\nindex = 1.5";
+pub(super) const LAMP: &str = "emission = [9, 9, 9]\ndiffuse = [0, 0, 0]";
+pub(super) const GLASS: &str = "glass = [0.9, 0.9, 0.9]\nindex = 1.5";
 
 fn room() -> String {
     sphere("room", [0.0; 3], 10.0, ROOM)

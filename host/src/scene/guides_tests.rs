@@ -4,16 +4,10 @@ use tracer::light::{Guide, MAX_GUIDES};
 use tracer::material::{Kind, MaterialRecord};
 use tracer::scene::Capability;
 
+use super::emitters_tests::{GLASS, LAMP, compiled, sphere};
 use crate::scene::{CompiledScene, Integrator, Scene, compile};
 
-const CAMERA: &str = "format = 1\n[camera]\nposition = [0, 0, 0]\ndirection = [0, 0, -1]\nplane_height = 1\n";
-const LAMP: &str = "emission = [9, 9, 9]\ndiffuse = [0, 0, 0]";
 const MIRROR: &str = "mirror = [0.9, 0.9, 0.9]";
-const GLASS: &str = "glass = [0.9, 0.9, 0.9]\nindex = 1.5";
-
-fn sphere(name: &str, centre: [f64; 3], radius: f64, more: &str) -> String {
-    format!("[[sphere]]\nname = \"{name}\"\ncentre = {centre:?}\nradius = {radius}\n{more}\n")
-}
 
 fn room(albedo: f64) -> String {
     let more = format!("hollow = true\ndiffuse = [0.1, {albedo}, 0.2]");
@@ -23,12 +17,6 @@ fn room(albedo: f64) -> String {
 /// Sunk in the ceiling: a cap.
 fn lamp() -> String {
     sphere("lamp", [0.0, 10.5, 0.0], 1.0, LAMP)
-}
-
-fn compiled(spheres: &[String]) -> CompiledScene {
-    let text = format!("{CAMERA}{}", spheres.concat());
-    let scene = Scene::parse("guides.toml", &text).unwrap_or_else(|error| panic!("{error}"));
-    compile(&scene, 64, 48, Integrator::NextEvent)
 }
 
 fn guides(compiled: &CompiledScene) -> Vec<Guide> {

@@ -112,8 +112,7 @@ pub(super) struct Blocked {
 
 /// The first sphere inside whose solid rays of a picture of this shape start.
 ///
-/// What the tent filter adds to a picture, a quarter of a pixel, is left out: the few rays that start there in a wall are too
-/// few to be measured.
+/// What the tent filter adds to a picture, a quarter of a pixel, is left out: rays that start there in a wall see it at once.
 pub(super) fn first_blocked_ray(
     camera: &Camera,
     spheres: &[&Sphere],

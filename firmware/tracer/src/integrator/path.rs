@@ -9,7 +9,7 @@ use crate::aggregate::Aggregate;
 use crate::arithmetic::{Formats, Sampling};
 use crate::capability::{Capabilities, Capability, Needs};
 use crate::geometry::{Interaction, PrimitiveId, Ray};
-use crate::light::{Counts, Onward};
+use crate::light::{Guidance, Lights, MisWeight};
 use crate::material::{MaterialRecord, RadianceNumbers};
 use crate::plan::{Plan, Termination};
 use crate::profile::Profile;
@@ -69,18 +69,12 @@ impl<P: Profile, F: Needs> Integrator<P> for Path<P, F> {
                 break;
             };
             if F::NEEDS.has(Capability::Guides) && has_looked {
-                if material.is_specular() {
-                    let lights = &scene.lights;
-                    match lights.share_of_guided::<P, F>(&ray, &interaction, guided_to, random) {
-                        Counts::InFull => {}
-                        Counts::InPart(share) => {
-                            throughput =
-                                throughput.map(|throughput| P::Numbers::attenuate(throughput, share));
-                        }
-                        Counts::ForNothing => break,
+                match weight::<P, F>(&scene.lights, material, &ray, &interaction, guided_to, random) {
+                    MisWeight::One => {}
+                    MisWeight::Share(share) => {
+                        throughput = throughput.map(|throughput| P::Numbers::attenuate(throughput, share));
                     }
-                } else if guided_to != PrimitiveId::NONE {
-                    break;
+                    MisWeight::Zero => break,
                 }
             }
             if material.emits() {
@@ -107,24 +101,24 @@ impl<P: Profile, F: Needs> Integrator<P> for Path<P, F> {
                 break;
             };
             throughput = attenuated::<P::Numbers>(throughput, share);
-            let onward = if F::NEEDS.has(Capability::Guides) && has_looked {
+            let guidance = if F::NEEDS.has(Capability::Guides) && has_looked {
                 scene.lights.guide::<P, F>(&interaction, random)
             } else {
-                Onward::Unguided
+                Guidance::Unguided
             };
-            guided_to = PrimitiveId::NONE;
-            let direction = match onward {
-                // Scene::view refuses what the image lacks.
-                Onward::Unguided => material.sample::<P, F>(ray.direction, &interaction, random),
-                Onward::To(direction, ball) => {
-                    guided_to = ball;
-                    Some(direction)
-                }
-                Onward::Nowhere => None,
+            // Scene::view refuses what the image lacks.
+            let (direction, ball) = match guidance {
+                Guidance::Unguided => (
+                    material.sample::<P, F>(ray.direction, &interaction, random),
+                    PrimitiveId::NONE,
+                ),
+                Guidance::To(direction, ball) => (Some(direction), ball),
+                Guidance::Nowhere => break,
             };
             let Some(direction) = direction else {
                 break;
             };
+            guided_to = ball;
             ray = Ray {
                 origin: interaction.point,
                 direction,
@@ -133,6 +127,25 @@ impl<P: Profile, F: Needs> Integrator<P> for Path<P, F> {
             };
         }
         Sample { radiance, rays }
+    }
+}
+
+/// What counts of the light that comes along a path which a surface that looks for light has sent on, guided or not.
+#[inline]
+fn weight<P: Profile, F: Needs>(
+    lights: &Lights<'_>,
+    material: &MaterialRecord,
+    ray: &Ray<P::Numbers>,
+    interaction: &Interaction<P::Numbers>,
+    guided_to: PrimitiveId,
+    random: &mut P::Random,
+) -> MisWeight<<P::Numbers as RadianceNumbers>::Weight> {
+    if material.is_specular() {
+        lights.weight_of_guided::<P, F>(ray, interaction, guided_to, random)
+    } else if guided_to == PrimitiveId::NONE {
+        MisWeight::One
+    } else {
+        MisWeight::Zero
     }
 }
 

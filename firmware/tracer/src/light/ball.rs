@@ -4,9 +4,8 @@
 use bytemuck::{Pod, Zeroable};
 use fixedmath::I16F16;
 
-use super::{Aim, Emitter, Light, LightNumbers, Magnitude, Place, drawn_around};
+use super::{Aim, Emitter, Light, LightNumbers, Magnitude, Place, drawn};
 use crate::arithmetic::vector::sub;
-use crate::capability::Needs;
 use crate::geometry::Ray;
 use crate::random::Random;
 
@@ -33,14 +32,11 @@ impl BallLight {
         self.radius > I16F16::ZERO && self.reach.is_sound() && !self.emitter.is_hollow() && self.reserved == 0
     }
 
-    /// Kept in one place: it is long.
-    #[inline(never)]
     fn weigh<N: LightNumbers>(&self, cosine: N::Unit, cone: N::Cone) -> N::Balance {
         N::balance_of_cone(cosine, cone, self.reach)
     }
 
     /// The way to its centre, and the cone that it fills; none from within.
-    #[inline(never)]
     fn cone<N: LightNumbers>(&self, point: [N::Length; 3]) -> Option<([N::Length; 3], N::Cone)> {
         let to_centre = sub(self.centre.map(N::length), point);
         let cone = N::cone(N::length(self.radius), N::dot(to_centre, to_centre))?;
@@ -54,10 +50,10 @@ impl Light for BallLight {
         &self.emitter
     }
 
-    fn aim<N: LightNumbers, F: Needs, R: Random>(&self, place: &Place<N>, random: &mut R) -> Option<Aim<N>> {
+    fn aim<N: LightNumbers>(&self, place: &Place<N>, random: &mut impl Random) -> Option<Aim<N>> {
         let (to_centre, cone) = self.cone::<N>(place.point)?;
         let axis = N::direction(to_centre)?;
-        let direction = drawn_around::<N, F, R>(axis, cone, random);
+        let direction = N::around(axis, drawn(random, |fraction| N::in_cone(cone, fraction)));
         let cosine = N::cosine(place.normal, direction);
         if cosine <= N::ZERO {
             return None;

@@ -5,7 +5,6 @@ use fixedmath::{I16F16, U0F32};
 
 use super::{Aim, Emitter, Light, LightNumbers, Magnitude, Place, drawn};
 use crate::arithmetic::vector::sub;
-use crate::capability::Needs;
 use crate::geometry::Ray;
 use crate::random::Random;
 
@@ -66,7 +65,7 @@ impl Light for CapLight {
     }
 
     #[inline]
-    fn aim<N: LightNumbers, F: Needs, R: Random>(&self, place: &Place<N>, random: &mut R) -> Option<Aim<N>> {
+    fn aim<N: LightNumbers>(&self, place: &Place<N>, random: &mut impl Random) -> Option<Aim<N>> {
         let point = drawn(random, |fraction| N::on_cap(self, fraction));
         let way = sub(point, place.point);
         let direction = N::direction(way)?;

@@ -9,10 +9,13 @@
 use bytemuck::{Pod, Zeroable};
 use fixedmath::{I2F30, I16F16, U0F32};
 
-use super::{LightNumbers, Magnitude, Place, drawn_around};
+use super::{LightNumbers, Lights, Magnitude, Place, departure, drawn};
+use crate::arithmetic::Formats;
 use crate::arithmetic::vector::sub;
 use crate::capability::Needs;
 use crate::geometry::{Interaction, PrimitiveId, Ray};
+use crate::material::RadianceNumbers;
+use crate::profile::Profile;
 use crate::random::Random;
 
 /// The most balls that paths are guided to.
@@ -46,6 +49,74 @@ pub struct Guide {
 
 const _: () = assert!(size_of::<Guide>() == 56);
 
+/// Where a diffuse surface sends its path on.
+#[derive(Clone, Copy, Debug)]
+pub enum Guidance<N: Formats> {
+    /// Wherever its BSDF does.
+    Unguided,
+    /// In this direction, to this ball.
+    To([N::Unit; 3], PrimitiveId),
+    /// Nowhere.
+    Nowhere,
+}
+
+/// What counts of the light that comes along a path which one of several ways has found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MisWeight<W> {
+    /// All of it.
+    One,
+    /// This share.
+    Share(W),
+    /// Nothing.
+    Zero,
+}
+
+impl Lights<'_> {
+    /// Whether a path is guided from a diffuse surface, and where to.
+    #[inline]
+    pub fn guide<P: Profile, F: Needs>(
+        &self,
+        interaction: &Interaction<P::Numbers>,
+        random: &mut P::Random,
+    ) -> Guidance<P::Numbers> {
+        // A scene without guides has the same samples in every image.
+        if self.guides.is_empty() {
+            return Guidance::Unguided;
+        }
+        let chance = random.fraction();
+        let Some(guide) = self.guides.iter().find(|guide| chance <= guide.threshold) else {
+            return Guidance::Unguided;
+        };
+        match guide.aim::<P::Numbers, F, _>(&Place::of(interaction), random) {
+            Some(direction) => Guidance::To(direction, guide.primitive),
+            None => Guidance::Nowhere,
+        }
+    }
+
+    /// What counts of the light that comes along a path that a diffuse surface has sent on along `ray`, guided `to` a ball or to none,
+    /// and that has met a specular surface.
+    #[cold]
+    #[inline(never)]
+    pub fn weight_of_guided<P: Profile, F: Needs>(
+        &self,
+        ray: &Ray<P::Numbers>,
+        interaction: &Interaction<P::Numbers>,
+        to: PrimitiveId,
+        random: &mut P::Random,
+    ) -> MisWeight<<P::Numbers as RadianceNumbers>::Weight> {
+        let is_elsewhere = to != PrimitiveId::NONE && to != interaction.primitive;
+        let mut guides = self.guides.iter();
+        let guide = guides.find(|guide| guide.primitive == interaction.primitive);
+        match guide.and_then(|guide| guide.balance(ray, interaction)) {
+            Some(balance) if !is_elsewhere => {
+                P::Numbers::thinned(balance, || random.fraction()).map_or(MisWeight::Zero, MisWeight::Share)
+            }
+            None if to == PrimitiveId::NONE => MisWeight::One,
+            _ => MisWeight::Zero,
+        }
+    }
+}
+
 impl Guide {
     /// The most steps of a sound record.
     pub const MOST_STEPS: u16 = 8;
@@ -60,41 +131,38 @@ impl Guide {
 
     /// A direction to the cap; none where what is drawn is behind the surface, or turned away from it.
     #[inline(never)]
-    pub(super) fn aim<N: LightNumbers, F: Needs, R: Random>(
+    #[expect(
+        clippy::extra_unused_type_parameters,
+        reason = "what has the type of a program's own is compiled with that program's checks"
+    )]
+    fn aim<N: LightNumbers, F: Needs, R: Random>(
         &self,
         place: &Place<N>,
         random: &mut R,
     ) -> Option<[N::Unit; 3]> {
         let axis = self.axis::<N>(place.point)?;
         let cone = N::stored_cone(self.spread);
-        let normal = drawn_around::<N, F, R>(axis, cone, random);
+        let normal = N::around(axis, drawn(random, |fraction| N::in_cone(cone, fraction)));
         let direction = N::direction(sub(self.at::<N>(normal), place.point))?;
         let is_seen = N::cosine(place.normal, direction) > N::ZERO && N::cosine(normal, direction) < N::ZERO;
         is_seen.then_some(direction)
     }
 
     /// The balance of a path that goes on along `ray` and has met the ball; none where no guided one goes.
-    #[inline(never)]
-    #[expect(
-        clippy::extra_unused_type_parameters,
-        reason = "what has the type of a program's own is compiled with that program's checks"
-    )]
-    pub(super) fn balance<N: LightNumbers, F: Needs>(
-        &self,
-        ray: &Ray<N>,
-        interaction: &Interaction<N>,
-    ) -> Option<N::Balance> {
+    fn balance<N: LightNumbers>(&self, ray: &Ray<N>, interaction: &Interaction<N>) -> Option<N::Balance> {
         let axis = self.axis::<N>(ray.origin)?;
         let facing = -N::cosine(interaction.normal, ray.direction);
         if N::cosine(axis, interaction.normal) < N::unit(self.edge) || facing <= N::ZERO {
             return None;
         }
-        // It has left its surface on whichever side that is.
-        let cosine = N::cosine(ray.normal, ray.direction);
-        let cosine = if cosine < N::ZERO { -cosine } else { cosine };
         let way = sub(interaction.point, ray.origin);
         let turned = N::scale(N::length(self.radius), facing);
-        Some(N::balance_of_cap(cosine, turned, self.reach, N::dot(way, way)))
+        Some(N::balance_of_cap(
+            departure(ray),
+            turned,
+            self.reach,
+            N::dot(way, way),
+        ))
     }
 
     /// To the middle of the cap. The normal of the point that reflects the emitter halves the angle between the ways to either: it is

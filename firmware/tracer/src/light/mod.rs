@@ -17,7 +17,7 @@ mod numbers;
 
 pub use ball::BallLight;
 pub use cap::CapLight;
-pub use guide::{Guide, MAX_GUIDES};
+pub use guide::{Guidance, Guide, MAX_GUIDES, MisWeight};
 pub use magnitude::Magnitude;
 pub use numbers::{LEAST_SHARE, LightNumbers, MOST_DOUBLINGS};
 
@@ -87,7 +87,7 @@ trait Light {
     fn emitter(&self) -> &Emitter;
 
     /// A direction in which it is, drawn from so that what can be seen of it is found evenly.
-    fn aim<N: LightNumbers, F: Needs, R: Random>(&self, place: &Place<N>, random: &mut R) -> Option<Aim<N>>;
+    fn aim<N: LightNumbers>(&self, place: &Place<N>, random: &mut impl Random) -> Option<Aim<N>>;
 
     /// The balance of light that `ray`, which left its surface at this cosine, has met at `point`; none where no connection leads there.
     fn balance<N: LightNumbers>(
@@ -103,6 +103,16 @@ struct Place<N: Formats> {
     point: [N::Length; 3],
     /// On the side from which light comes.
     normal: [N::Unit; 3],
+}
+
+impl<N: Formats> Place<N> {
+    #[inline]
+    fn of(interaction: &Interaction<N>) -> Self {
+        Self {
+            point: interaction.point,
+            normal: interaction.facing(),
+        }
+    }
 }
 
 /// A direction in which an emitter is.
@@ -188,8 +198,8 @@ impl<'s> Lights<'s> {
         let is_choice = F::NEEDS.has(Capability::ManyLights) && self.caps.len() + balls.len() > 1;
         let chance = if is_choice { random.fraction() } else { U0F32::ZERO };
         match chosen::<_, F>(self.caps, chance) {
-            Some(light) => connect::<P, F>(light, interaction, random),
-            None => connect::<P, F>(chosen::<_, F>(balls, chance)?, interaction, random),
+            Some(light) => connect::<P>(light, interaction, random),
+            None => connect::<P>(chosen::<_, F>(balls, chance)?, interaction, random),
         }
     }
 
@@ -201,9 +211,7 @@ impl<'s> Lights<'s> {
         ray: &Ray<N>,
         interaction: &Interaction<N>,
     ) -> Option<N::Weight> {
-        // It has left its surface on whichever side that is.
-        let cosine = N::cosine(ray.normal, ray.direction);
-        let cosine = if cosine < N::ZERO { -cosine } else { cosine };
+        let cosine = departure(ray);
         let balance = if let Some(light) = light_of(self.caps, interaction.primitive) {
             light.balance(ray, cosine, interaction.point)
         } else if F::NEEDS.has(Capability::BallLights)
@@ -214,78 +222,6 @@ impl<'s> Lights<'s> {
             None
         };
         balance.map(N::share)
-    }
-}
-
-/// Where a diffuse surface sends its path on.
-#[derive(Clone, Copy, Debug)]
-pub enum Onward<N: Formats> {
-    /// Wherever its BSDF does.
-    Unguided,
-    /// In this direction, to this ball.
-    To([N::Unit; 3], PrimitiveId),
-    /// Nowhere.
-    Nowhere,
-}
-
-/// What counts of the light that comes along a path.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Counts<W> {
-    /// All of it.
-    InFull,
-    /// This share.
-    InPart(W),
-    /// Nothing.
-    ForNothing,
-}
-
-impl Lights<'_> {
-    /// Whether a path is guided from a diffuse surface, and where to.
-    #[inline]
-    pub fn guide<P: Profile, F: Needs>(
-        &self,
-        interaction: &Interaction<P::Numbers>,
-        random: &mut P::Random,
-    ) -> Onward<P::Numbers> {
-        // A scene without guides has the same samples in every image.
-        if self.guides.is_empty() {
-            return Onward::Unguided;
-        }
-        let chance = random.fraction();
-        let Some(guide) = self.guides.iter().find(|guide| chance <= guide.threshold) else {
-            return Onward::Unguided;
-        };
-        let place = Place {
-            point: interaction.point,
-            normal: interaction.facing(),
-        };
-        match guide.aim::<P::Numbers, F, _>(&place, random) {
-            Some(direction) => Onward::To(direction, guide.primitive),
-            None => Onward::Nowhere,
-        }
-    }
-
-    /// What counts of the light that comes along a path that a diffuse surface has sent on along `ray`, guided `to` a ball or to none,
-    /// and that has met a specular surface.
-    #[cold]
-    #[inline(never)]
-    pub fn share_of_guided<P: Profile, F: Needs>(
-        &self,
-        ray: &Ray<P::Numbers>,
-        interaction: &Interaction<P::Numbers>,
-        to: PrimitiveId,
-        random: &mut P::Random,
-    ) -> Counts<<P::Numbers as RadianceNumbers>::Weight> {
-        let is_elsewhere = to != PrimitiveId::NONE && to != interaction.primitive;
-        let mut guides = self.guides.iter();
-        let guide = guides.find(|guide| guide.primitive == interaction.primitive);
-        match guide.and_then(|guide| guide.balance::<P::Numbers, F>(ray, interaction)) {
-            Some(balance) if !is_elsewhere => {
-                P::Numbers::thinned(balance, || random.fraction()).map_or(Counts::ForNothing, Counts::InPart)
-            }
-            None if to == PrimitiveId::NONE => Counts::InFull,
-            _ => Counts::ForNothing,
-        }
     }
 }
 
@@ -301,16 +237,12 @@ fn light_of<L: Light>(lights: &[L], primitive: PrimitiveId) -> Option<&L> {
 }
 
 #[inline]
-fn connect<P: Profile, F: Needs>(
+fn connect<P: Profile>(
     light: &impl Light,
     interaction: &Interaction<P::Numbers>,
     random: &mut P::Random,
 ) -> Option<Connection<P::Numbers>> {
-    let place = Place {
-        point: interaction.point,
-        normal: interaction.facing(),
-    };
-    let aim = light.aim::<P::Numbers, F, _>(&place, random)?;
+    let aim = light.aim(&Place::of(interaction), random)?;
     let share = P::Numbers::thinned(aim.balance, || random.fraction())?;
     Some(Connection {
         sight: Sight {
@@ -329,18 +261,11 @@ fn connect<P: Profile, F: Needs>(
     })
 }
 
-/// A direction in a cone round `axis`, uniform by solid angle. Kept in one place: it is long.
-#[inline(never)]
-#[expect(
-    clippy::extra_unused_type_parameters,
-    reason = "what has the type of a program's own is compiled with that program's checks"
-)]
-fn drawn_around<N: LightNumbers, F: Needs, R: Random>(
-    axis: [N::Unit; 3],
-    cone: N::Cone,
-    random: &mut R,
-) -> [N::Unit; 3] {
-    N::around(axis, drawn(random, |fraction| N::in_cone(cone, fraction)))
+/// The cosine at which `ray` has left its surface, on whichever side that is.
+#[inline]
+fn departure<N: LightNumbers>(ray: &Ray<N>) -> N::Unit {
+    let cosine = N::cosine(ray.normal, ray.direction);
+    if cosine < N::ZERO { -cosine } else { cosine }
 }
 
 /// A sample that a fraction in five has not, drawn until there is one.

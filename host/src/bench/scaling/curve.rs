@@ -106,9 +106,19 @@ pub struct Sweep {
     pub share_of_linear: f64,
 }
 
+impl Derivation {
+    /// Samples of a pixel that this machine shall have in a packet.
+    pub(super) fn chosen(&self) -> u16 {
+        let enough = self.enough.map(|packet| packet / PACKET_PIXELS);
+        enough
+            .and_then(|samples| u16::try_from(samples).ok())
+            .unwrap_or(self.samples_of_a_pixel)
+    }
+}
+
 impl Work {
     /// The same work in units of another number of samples: as many units, each of which costs in proportion.
-    fn with_samples(&self, samples_of_a_pixel: u16) -> Self {
+    pub(super) fn with_samples(&self, samples_of_a_pixel: u16) -> Self {
         let more = f64::from(samples_of_a_pixel) / f64::from(self.samples_of_a_pixel);
         let cost = |&cost: &Duration| cost.saturating_sub(self.packet).mul_f64(more) + self.packet;
         Self {

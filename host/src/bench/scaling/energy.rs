@@ -13,7 +13,7 @@ use tracer::unit::{Plan, Termination};
 
 use super::published::{
     Assumption, CHIP_POWER, CHIP_RENDERERS, CLOCK, CORE_RATE, CORES, M3_CLOCK, M3_CURRENT, M3_VOLTAGE,
-    PROCESSOR_POWER, PROCESSOR_RATE,
+    PROCESSOR_POWER, PROCESSOR_RATE, THREAD_POWER,
 };
 use super::runs::{Picture, Subject};
 use super::{ScalingError, rounded};
@@ -119,12 +119,12 @@ pub struct Row {
     pub estimator: String,
     /// Samples a second.
     pub samples_per_second: f64,
-    /// Watts; null where nobody knows.
-    pub watts: Option<f64>,
+    /// Watts.
+    pub watts: f64,
     /// Samples a joule.
-    pub samples_per_joule: Option<f64>,
+    pub samples_per_joule: f64,
     /// Pictures of the given error a joule.
-    pub pictures_per_joule: Option<f64>,
+    pub pictures_per_joule: f64,
 }
 
 impl Estimator {
@@ -235,19 +235,22 @@ impl Energy {
         let estimators = costs.into_iter().collect::<Result<Vec<_>, _>>()?;
         let processor = processor();
         let threads = std::thread::available_parallelism().map_or(1, usize::from);
-        let host_watts = thermal_design_power(&processor, threads as f64);
+        let known = thermal_design_power(&processor, threads as f64);
+        let host_watts = known.unwrap_or(threads as f64 * THREAD_POWER.value);
+        let mut assumptions = vec![
+            CLOCK,
+            CHIP_POWER,
+            CHIP_RENDERERS,
+            CORE_RATE,
+            PROCESSOR_RATE,
+            PROCESSOR_POWER,
+            M3_CURRENT,
+            M3_VOLTAGE,
+            M3_CLOCK,
+        ];
+        assumptions.extend(known.is_none().then_some(THREAD_POWER));
         Ok(Self {
-            assumptions: vec![
-                CLOCK,
-                CHIP_POWER,
-                CHIP_RENDERERS,
-                CORE_RATE,
-                PROCESSOR_RATE,
-                PROCESSOR_POWER,
-                M3_CURRENT,
-                M3_VOLTAGE,
-                M3_CLOCK,
-            ],
+            assumptions,
             error: ERROR,
             picture: [PICTURE.width, PICTURE.height],
             rows: rows(&estimators, host_watts),
@@ -258,7 +261,7 @@ impl Energy {
     }
 }
 
-fn rows(costs: &[Cost], host_watts: Option<f64>) -> Vec<Row> {
+fn rows(costs: &[Cost], host_watts: f64) -> Vec<Row> {
     let cores = f64::from(CORES);
     let machine_watts = cores / CHIP_RENDERERS.value * CHIP_POWER.value;
     // uA/MHz times V is 10^-12 J a cycle.
@@ -270,19 +273,23 @@ fn rows(costs: &[Cost], host_watts: Option<f64>) -> Vec<Row> {
             "published machine, as published",
             published,
             rate,
-            Some(machine_watts),
+            machine_watts,
         ));
-        let watts = Some(PROCESSOR_POWER.value);
         // Its noise is that of double precision, which is `precise`'s.
-        rows.push(Row::of("published processor", plain, PROCESSOR_RATE.value, watts));
+        rows.push(Row::of(
+            "published processor",
+            plain,
+            PROCESSOR_RATE.value,
+            PROCESSOR_POWER.value,
+        ));
     }
     for cost in costs {
         let arm9 = cores * CLOCK.value / cost.arm9_cycles;
-        rows.push(Row::of("136 SpiNNaker cores", cost, arm9, Some(machine_watts)));
+        rows.push(Row::of("136 SpiNNaker cores", cost, arm9, machine_watts));
     }
     for cost in costs {
         let m3 = M3_CLOCK.value / cost.cortex_m3_cycles;
-        rows.push(Row::of("one Cortex-M3", cost, m3, Some(m3_watts)));
+        rows.push(Row::of("one Cortex-M3", cost, m3, m3_watts));
     }
     for cost in costs {
         rows.push(Row::of("this host", cost, cost.host_rate, host_watts));
@@ -291,8 +298,8 @@ fn rows(costs: &[Cost], host_watts: Option<f64>) -> Vec<Row> {
 }
 
 impl Row {
-    fn of(machine: &'static str, cost: &Cost, samples_per_second: f64, watts: Option<f64>) -> Self {
-        let samples_per_joule = watts.map(|watts| samples_per_second / watts);
+    fn of(machine: &'static str, cost: &Cost, samples_per_second: f64, watts: f64) -> Self {
+        let samples_per_joule = samples_per_second / watts;
         let samples = f64::from(PICTURE.width) * f64::from(PICTURE.height) * cost.samples_of_a_pixel;
         Self {
             machine,
@@ -300,7 +307,7 @@ impl Row {
             samples_per_second,
             watts,
             samples_per_joule,
-            pictures_per_joule: samples_per_joule.map(|per_joule| per_joule / samples),
+            pictures_per_joule: samples_per_joule / samples,
         }
     }
 }
@@ -337,27 +344,22 @@ mod tests {
     /// 136 cores of 200 MHz and 8 W at 2,000 cycles a sample make 13.6 million samples a second, 1.7 million a joule.
     #[test]
     fn energy_is_power_over_speed() {
-        let rows = rows(&[cost("a", 2000.0, 10.0), cost("b", 1000.0, 1.0)], None);
+        let rows = rows(&[cost("a", 2000.0, 10.0), cost("b", 1000.0, 1.0)], 4.0);
         let of = |machine: &str| {
             rows.iter()
                 .filter(|row| row.machine == machine)
                 .collect::<Vec<_>>()
         };
         let machine = of("136 SpiNNaker cores");
-        assert_eq!(machine[0].samples_per_joule, Some(1.7e6));
-        assert_eq!(
-            machine[0].pictures_per_joule,
-            Some(1.7e6 / (256.0 * 192.0 * 10.0))
-        );
-        assert_eq!(machine[1].pictures_per_joule, Some(3.4e6 / (256.0 * 192.0)));
-        assert_eq!(of("this host")[0].samples_per_joule, None);
+        assert_eq!(machine[0].samples_per_joule, 1.7e6);
+        assert_eq!(machine[0].pictures_per_joule, 1.7e6 / (256.0 * 192.0 * 10.0));
+        assert_eq!(machine[1].pictures_per_joule, 3.4e6 / (256.0 * 192.0));
+        assert_eq!(of("this host")[0].samples_per_joule, 1e6 / 4.0);
         // 219 uA/MHz at 3 V are 657 pJ a cycle.
-        let m3 = of("one Cortex-M3")[0]
-            .samples_per_joule
-            .expect("its power is assumed");
+        let m3 = of("one Cortex-M3")[0].samples_per_joule;
         assert!((m3 * 657e-12 * 2000.0 - 1.0).abs() < 1e-12, "{m3}");
         let published = of("published machine, as published")[0].samples_per_joule;
-        assert_eq!(published, Some(530_226.0 / 4.0 / 8.0));
+        assert_eq!(published, 530_226.0 / 4.0 / 8.0);
     }
 
     #[test]

@@ -75,6 +75,8 @@ pub struct Experiment {
     pub size: Size,
     /// Samples of a pixel in the unit that is run on each number of cores, a multiple of 4.
     pub samples: u16,
+    /// Whether larger units are run, too, on the most cores; else they cost in proportion.
+    pub runs_larger: bool,
     /// The size of the picture by which noise and cycles of estimators are told, and its samples of a pixel; none where energy is not
     /// measured.
     pub energy: Option<(Size, u32)>,
@@ -94,6 +96,7 @@ impl Experiment {
             cores,
             size: size(480, 360),
             samples: 16,
+            runs_larger: true,
             energy: Some((size(64, 48), 1024)),
             install,
         }
@@ -309,14 +312,27 @@ impl Bench<'_> {
         scaling.draw(&work, &cores, &cores);
         scaling.runs.extend(picture.runs);
         let mut derivation = work.derivation(most);
-        for samples in larger(self.experiment.samples, derivation.samples_of_a_pixel) {
+        let mut larger = |work: &mut Work, samples: u16| -> Result<(), ScalingError> {
+            if samples <= work.samples_of_a_pixel {
+                return Ok(());
+            }
+            if !self.experiment.runs_larger {
+                *work = work.with_samples(samples);
+                scaling.draw(work, &cores, &[]);
+                return Ok(());
+            }
             let subject = self.subject(self.experiment.size, termination, samples);
             let picture = Picture::render(subject, self.stand, &[most], Recorded::Nothing, self.interrupted)?;
-            work = scaling.work(&picture, price);
-            scaling.draw(&work, &cores, &[most]);
+            *work = scaling.work(&picture, price);
+            scaling.draw(work, &cores, &[most]);
             scaling.runs.extend(picture.runs);
+            Ok(())
+        };
+        if USUAL < derivation.samples_of_a_pixel {
+            larger(&mut work, USUAL)?;
         }
         work.sweep(&mut derivation);
+        larger(&mut work, derivation.chosen())?;
         scaling.derivations.push(derivation);
         Ok(work.core_rate())
     }
@@ -339,14 +355,6 @@ impl Scaling {
             self.series.push(work.series(cores, limit, run));
         }
     }
-}
-
-/// Samples of a pixel of the larger units that are run besides: the usual ones, and those that the wire needs.
-fn larger(small: u16, derived: u16) -> Vec<u16> {
-    let mut sizes = vec![USUAL, derived];
-    sizes.retain(|&size| size > small && size <= derived);
-    sizes.dedup();
-    sizes
 }
 
 /// The least multiple of 4 samples of a pixel that makes so many samples in a packet.

@@ -59,6 +59,14 @@ pub const PROCESSOR_POWER: Assumption = Assumption {
     source: "assumed: desktop processors of 2012 had thermal design powers of 65 to 95 W",
 };
 
+/// Power of a thread of a host whose processor is not known: between the thermal design powers over threads, 1.9 to 3.4 W, of servers' processors.
+pub const THREAD_POWER: Assumption = Assumption {
+    what: "power of a thread of this host",
+    value: 2.2,
+    unit: "W",
+    source: "assumed, where its processor does not say its model: an EPYC 7763's 280 W over 128 threads",
+};
+
 /// Power of a chip of SpiNNaker: its makers' figure for one under load.
 pub const CHIP_POWER: Assumption = Assumption {
     what: "power of a chip",

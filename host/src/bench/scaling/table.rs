@@ -317,16 +317,15 @@ impl Row {
 
 impl std::fmt::Display for Row {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let known = |value: Option<f64>| value.map_or_else(|| "unknown".to_owned(), figure);
         write!(
             f,
             "{:32} {:30} {:>14} {:>9} {:>12} {:>12}",
             self.machine,
             self.estimator,
             figure(self.samples_per_second),
-            known(self.watts),
-            known(self.samples_per_joule),
-            known(self.pictures_per_joule.map(|pictures| 1e3 * pictures)),
+            figure(self.watts),
+            figure(self.samples_per_joule),
+            figure(1e3 * self.pictures_per_joule),
         )
     }
 }

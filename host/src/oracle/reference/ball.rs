@@ -107,6 +107,19 @@ impl Balls {
         self.instructions.dispatch(Nearest { balls: self, ray })
     }
 
+    /// The surface of this ball, if `ray` starts outside of it and never comes in: where that is nearest.
+    pub(super) fn beyond(&self, number: usize, ray: &Ray) -> Option<Hit> {
+        let ball = self.balls[number];
+        let from_centre = ray.origin - ball.centre;
+        let is_outside = from_centre.dot(from_centre) > ball.radius * ball.radius;
+        let outward = from_centre.normalised();
+        (is_outside && outward.dot(ray.direction) >= 0.0).then(|| Hit {
+            ball: number,
+            point: ball.centre + outward * ball.radius,
+            outward,
+        })
+    }
+
     /// The first surface that `ray` meets.
     #[inline]
     pub(super) fn first_hit(&self, ray: &Ray) -> Option<Hit> {

@@ -32,6 +32,8 @@ pub(super) struct World {
     surfaces: Vec<Surface>,
     lights: Lights,
     images: Vec<Image>,
+    /// The hollow balls, outside of which all is solid.
+    walls: Vec<usize>,
     termination: Termination,
     /// Whether a sample takes more than one way from the camera.
     splits: bool,
@@ -81,7 +83,9 @@ impl World {
                 kind,
             }
         });
+        let walls = (0..).zip(&scene.spheres).filter(|(_, sphere)| sphere.hollow);
         Self {
+            walls: walls.map(|(number, _)| number).collect(),
             balls: Balls::new(balls.collect()),
             surfaces: surfaces.collect(),
             lights: Lights::new(scene),
@@ -134,7 +138,8 @@ impl World {
 
     /// Follows a path to its end, and adds what it finds.
     fn follow(&self, mut walk: Walk, draws: &mut Draws<'_>, found: &mut Sample) {
-        while let Some(hit) = self.balls.first_hit(&walk.ray) {
+        let mut seen = self.wall_around(&walk.ray);
+        while let Some(hit) = seen.take().or_else(|| self.balls.first_hit(&walk.ray)) {
             if matches!(walk.start, Start::Image(_, ball, _) if walk.by.is_none() && ball != hit.ball) {
                 return;
             }
@@ -159,6 +164,14 @@ impl World {
             walk.ray.origin = hit.point;
             walk.ray.departed = Some(hit.ball);
         }
+    }
+
+    /// The wall that a camera ray starts in, as the filter has it at the rim of a picture of large pixels: it is seen at once.
+    fn wall_around(&self, ray: &Ray) -> Option<Hit> {
+        if ray.departed.is_some() {
+            return None;
+        }
+        self.walls.iter().find_map(|&wall| self.balls.beyond(wall, ray))
     }
 
     fn is_last(&self, met: u32) -> bool {

@@ -58,6 +58,19 @@ pub struct Series {
     pub named: bool,
 }
 
+impl Series {
+    /// Points that are not joined, each with its name.
+    pub fn of_named(name: impl Into<String>, look: usize, points: Vec<Point>) -> Self {
+        Self {
+            name: name.into(),
+            points,
+            line: Line::None,
+            look,
+            named: true,
+        }
+    }
+}
+
 /// How points are joined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Line {

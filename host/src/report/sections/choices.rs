@@ -5,7 +5,7 @@ use tracer::profile::{Paper, Precise};
 use tracer::unit::{Plan, Termination};
 
 use super::super::part::{Error, Part, SCENE, Workshop};
-use super::super::plot::{Axis, Line, Plot, Point, Series, number};
+use super::super::plot::{Axis, Plot, Point, Series, number};
 use super::super::section::{Figure, Section};
 use super::super::table::Table;
 use crate::firmware::Choice;
@@ -394,21 +394,14 @@ fn scatter(
             })
             .collect()
     };
-    let series = |name: &str, look, points| Series {
-        name: name.to_owned(),
-        points,
-        line: Line::None,
-        look,
-        named: true,
-    };
     let all = [
-        series("all ours", 0, points(&|found| found.is_default)),
-        series(
+        Series::of_named("all ours", 0, points(&|found| found.is_default)),
+        Series::of_named(
             "one choice switched, beside double precision",
             1,
             points(&|found| !found.is_default && found.against == "double precision"),
         ),
-        series(
+        Series::of_named(
             "beside the reference",
             3,
             points(&|found| found.against == "the reference"),

@@ -1,10 +1,13 @@
 //! The sections of the page: a file each.
 
 mod choices;
+mod energy;
 mod figures;
 mod operations;
 mod samples;
+mod scaling;
 mod scenes;
+mod spectrum;
 mod stability;
 mod time;
 
@@ -18,15 +21,15 @@ use crate::stability::Plot as Curves;
 pub const PARTS: &[Part] = &[
     operations::PART,
     samples::PART,
+    spectrum::PART,
     choices::PART,
     time::PART,
     figures::PART,
+    scaling::PART,
+    energy::PART,
     stability::PART,
     scenes::PART,
 ];
-
-/// The clock of the cores that the published system ran on, in cycles a second.
-const CLOCK: f64 = 200e6;
 
 /// Curves that a part of the room for stability has found. Points that have no place on its axes are left out there, too.
 fn curves(found: &Curves) -> Plot {

@@ -109,17 +109,10 @@ fn plot(group: &[&Row]) -> Option<Plot> {
         })
         .collect()
     };
-    let series = |name: &str, look, points| Series {
-        name: name.to_owned(),
-        points,
-        line: Line::None,
-        look,
-        named: true,
-    };
     let makers = [
-        series("ours", 0, points(&|row| row.maker == "ours")),
-        series("published", 1, points(&|row| row.maker == "published")),
-        series(
+        Series::of_named("ours", 0, points(&|row| row.maker == "ours")),
+        Series::of_named("published", 1, points(&|row| row.maker == "published")),
+        Series::of_named(
             "others' crates, soft float",
             2,
             points(&|row| !matches!(row.maker, "ours" | "published")),
@@ -149,7 +142,7 @@ fn plot(group: &[&Row]) -> Option<Plot> {
             Series {
                 line: Line::Front,
                 named: false,
-                ..series("not beaten", 5, best)
+                ..Series::of_named("not beaten", 5, best)
             },
         );
     }

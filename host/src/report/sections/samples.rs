@@ -6,8 +6,8 @@ use super::super::part::{Error, Part, Workshop};
 use super::super::plot::{Along, Axis, Line, Plot, Point, Rule, Series, number};
 use super::super::section::{Figure, Section};
 use super::super::table::Table;
-use super::CLOCK;
 use crate::bench::samples::Row;
+use crate::bench::scaling::published::{CLOCK, CORE_RATE};
 use crate::firmware::arithmetic::Sampler;
 use crate::firmware::board::Board;
 use crate::scene::Integrator;
@@ -22,15 +22,8 @@ pub(super) const PART: Part = Part {
 
 /// Efficiencies that this project set out for: of paths as published, and of the best there is.
 const WANTED: [f64; 2] = [12.0, 130.0];
-/// What the published machine made a second (its authors' figure for the same scene), on boards of so many cores of [`CLOCK`].
-const PUBLISHED_SAMPLES: f64 = 530_226.0;
-const PUBLISHED_BOARDS: f64 = 4.0;
-const PUBLISHED_CORES: f64 = 136.0;
-
 /// Cycles that the published machine spent on a sample, communication and all.
-fn published() -> f64 {
-    CLOCK * PUBLISHED_BOARDS * PUBLISHED_CORES / PUBLISHED_SAMPLES
-}
+const PUBLISHED_CYCLES: f64 = CLOCK.value / CORE_RATE.value;
 
 fn make(workshop: &Workshop<'_>, _effort: &Effort) -> Result<Section, Error> {
     let rows = workshop.samples()?;
@@ -39,7 +32,6 @@ fn make(workshop: &Workshop<'_>, _effort: &Effort) -> Result<Section, Error> {
         "{}x{} pixels of the Cornell box, {} samples a pixel.",
         series.size.width, series.size.height, series.spp
     );
-    let published_cycles = published();
     let efficiency = by_kind(
         rows,
         "Efficiency",
@@ -62,10 +54,10 @@ fn make(workshop: &Workshop<'_>, _effort: &Effort) -> Result<Section, Error> {
         }),
         Figure::Plot(Plot {
             about: format!("The line is what the published machine spent. {about}"),
-            rules: vec![rule(published_cycles, format!("published machine: {}", number(published_cycles.round())))],
+            rules: vec![rule(PUBLISHED_CYCLES, format!("published machine: {}", number(PUBLISHED_CYCLES.round())))],
             ..cycles
         }),
-        Figure::Table(factors(rows, published_cycles)),
+        Figure::Table(factors(rows)),
     ];
     Ok(Section {
         name: PART.name,
@@ -148,7 +140,7 @@ fn by_kind(rows: &[Row], title: &str, name: &str, value: impl Fn(&Row) -> Option
 }
 
 /// How many times fewer cycles than the published machine each kind takes on the first board.
-fn factors(rows: &[Row], published: f64) -> Table {
+fn factors(rows: &[Row]) -> Table {
     let head = [
         "kind",
         "cycles a sample",
@@ -160,12 +152,12 @@ fn factors(rows: &[Row], published: f64) -> Table {
         "efficiency",
     ];
     let mut table = Table::new("Beside the published machine", head.map(str::to_owned).to_vec()).with_notes(format!(
-        "On the ARMv5TE. The published machine spent {} cycles on a sample: {PUBLISHED_BOARDS} boards of {PUBLISHED_CORES} cores of {} MHz made \
-         {} samples a second, by its authors' figures. Ours are of a core alone, without its network. Bias and rmse are beside the \
+        "On the ARMv5TE. The published machine spent {} cycles on a sample: a core of {} MHz made {} a second ({}). Ours are of a core alone, without its network. Bias and rmse are beside the \
          independent reference of the same way to end a path, ± one standard error.",
-        number(published.round()),
-        CLOCK / 1e6,
-        number(PUBLISHED_SAMPLES)
+        number(PUBLISHED_CYCLES.round()),
+        number(CLOCK.value / 1e6),
+        number(CORE_RATE.value),
+        CORE_RATE.source
     ));
     let figure = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), number);
     let share = |share: Option<f64>, error: Option<f64>| match (share, error) {
@@ -176,7 +168,7 @@ fn factors(rows: &[Row], published: f64) -> Table {
         table.push(vec![
             kind(row),
             figure(row.cycles_per_sample),
-            figure(row.cycles_per_sample.map(|cycles| published / cycles)),
+            figure(row.cycles_per_sample.map(|cycles| PUBLISHED_CYCLES / cycles)),
             figure(row.variance_mean),
             share(row.bias, row.bias_standard_error),
             share(row.lockstep_bias, row.lockstep_bias_standard_error),

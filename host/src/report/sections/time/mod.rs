@@ -11,8 +11,8 @@ use super::super::picture::Image;
 use super::super::plot::{Along, Axis, Clock, Line, Plot, Point, Rule, Series, number};
 use super::super::section::{Figure, Section};
 use super::super::table::Table;
-use super::CLOCK;
 use crate::bench::samples::Row;
+use crate::bench::scaling::published::CLOCK;
 use crate::firmware::board::Board;
 use crate::image::picture::{Estimate, Picture};
 use crate::oracle::compare::compare;
@@ -34,8 +34,7 @@ pub(in crate::report) const TELLING: &str = "error-against-time-rmse";
 
 /// Pixels of the picture that the time's scale is for: the default size of `cargo xtask render`.
 const PIXELS: f64 = 256.0 * 192.0;
-/// Pixels of the pictures that are compared. Smaller ones have pixels so large that rays of the top row start above the ceiling, and there is no
-/// truth of what those see.
+/// Pixels of the pictures that are compared. Of smaller ones many rays of the top row start above the ceiling, and `paper` does not see it then.
 const SIZE: [u16; 2] = [48, 32];
 /// Samples a pixel by which the floor is found.
 const PAIRED: u32 = 4096;
@@ -278,8 +277,11 @@ fn over_time(
     Plot {
         series: series.collect(),
         clock: Some(Clock {
-            name: format!("a picture of 256x192 on one core of {} MHz", CLOCK / 1e6),
-            seconds: PIXELS / CLOCK,
+            name: format!(
+                "a picture of 256x192 on one core of {} MHz",
+                number(CLOCK.value / 1e6)
+            ),
+            seconds: PIXELS / CLOCK.value,
         }),
         ..Plot::new(name, title, Axis::log("cycles a pixel"), Axis::log(upwards))
     }
@@ -386,7 +388,7 @@ fn equal_time(workshop: &Workshop<'_>, scene: &Scene, courses: &[Course]) -> Res
             &picture,
         ));
     }
-    let seconds = budget * PIXELS / CLOCK;
+    let seconds = budget * PIXELS / CLOCK.value;
     Ok(Figure::Pictures {
         title: format!(
             "Equal time: {} cycles a pixel each, {} s for 256x192 on one core",

@@ -5,16 +5,13 @@ use fixedmath::{I2F30, I16F16, U0F32};
 use tracer::arithmetic::{Mixed, Sampling};
 use tracer::capability::All;
 use tracer::geometry::{Interaction, MaterialId, PrimitiveId, Ray};
-use tracer::light::{Counts, Guide, Lights, Magnitude, Onward};
+use tracer::light::{Guidance, Guide, Lights, MisWeight};
 use tracer::profile::{Precise, Profile};
 use tracer::random::Random;
 
-type Samples = <Precise as Profile>::Random;
+use super::magnitude;
 
-fn magnitude(value: f64) -> Magnitude {
-    let exponent = value.log2().floor() as i32 - 52;
-    Magnitude::new((value * 2f64.powi(-exponent)) as u64, exponent)
-}
+type Samples = <Precise as Profile>::Random;
 
 /// A ball that is guided to.
 #[derive(Clone, Copy)]
@@ -93,9 +90,9 @@ fn place(point: [f64; 3], normal: [f64; 3]) -> Interaction<Mixed> {
 fn weight(balls: &[Ball], lights: &Lights<'_>, at: &Interaction<Mixed>, random: &mut Samples) -> f64 {
     let own = 1.0 - balls.iter().map(|ball| ball.share).sum::<f64>();
     let (direction, to) = match lights.guide::<Precise, All>(at, random) {
-        Onward::Nowhere => return 0.0,
-        Onward::To(direction, ball) => (direction, ball),
-        Onward::Unguided => loop {
+        Guidance::Nowhere => return 0.0,
+        Guidance::To(direction, ball) => (direction, ball),
+        Guidance::Unguided => loop {
             if let Some(found) = Mixed::on_hemisphere(random.fraction()) {
                 break (Mixed::around(at.normal, found), PrimitiveId::NONE);
             }
@@ -118,11 +115,11 @@ fn weight(balls: &[Ball], lights: &Lights<'_>, at: &Interaction<Mixed>, random: 
         primitive: PrimitiveId::new(index),
         material: MaterialId::new(0),
     };
-    let share = lights.share_of_guided::<Precise, All>(&ray, &met, to, random);
+    let share = lights.weight_of_guided::<Precise, All>(&ray, &met, to, random);
     match share {
-        Counts::InFull => 1.0 / own,
-        Counts::InPart(share) => share.to_num::<f64>() / own,
-        Counts::ForNothing => 0.0,
+        MisWeight::One => 1.0 / own,
+        MisWeight::Share(share) => share.to_num::<f64>() / own,
+        MisWeight::Zero => 0.0,
     }
 }
 
@@ -209,7 +206,7 @@ fn a_mirror_shows_the_emitter_where_paths_are_guided_to() {
     for _ in 0..20_000 {
         let mut coordinate = || f64::from(random.next_fraction()) / 2f64.powi(32) * 12.0 - 6.0;
         let point = [coordinate(), -1.0, coordinate()];
-        let Onward::To(direction, _) =
+        let Guidance::To(direction, _) =
             lights.guide::<Precise, All>(&place(point, [0.0, 1.0, 0.0]), &mut samples)
         else {
             continue;
@@ -253,9 +250,9 @@ fn a_guided_path_counts_only_where_it_was_guided_to() {
         material: MaterialId::new(0),
     };
     let mut share =
-        |primitive, to| lights.share_of_guided::<Precise, All>(&ray, &met(primitive), to, &mut random);
+        |primitive, to| lights.weight_of_guided::<Precise, All>(&ray, &met(primitive), to, &mut random);
     let [mirror, glass, other] = [index, 1, 5].map(PrimitiveId::new);
-    assert_eq!(share(mirror, glass), Counts::ForNothing);
-    assert_eq!(share(other, glass), Counts::ForNothing);
-    assert_eq!(share(other, PrimitiveId::NONE), Counts::InFull);
+    assert_eq!(share(mirror, glass), MisWeight::Zero);
+    assert_eq!(share(other, glass), MisWeight::Zero);
+    assert_eq!(share(other, PrimitiveId::NONE), MisWeight::One);
 }

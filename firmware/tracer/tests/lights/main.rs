@@ -1,5 +1,7 @@
 //! Looking for light: points of caps, directions in cones, and what of a connection counts, against double precision.
 
+mod guides;
+
 use fixedmath::random::Lcg64;
 use fixedmath::{I2F30, I16F16, U0F32};
 use floating::Floating;
