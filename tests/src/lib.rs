@@ -10,6 +10,7 @@ use std::sync::OnceLock;
 
 use host::firmware;
 use host::firmware::Level;
+use host::firmware::arithmetic::Arithmetic;
 use host::firmware::board::Board;
 use host::image::film::Film;
 use host::image::picture::Estimate;
@@ -74,6 +75,12 @@ pub fn plan<P: Profile>(width: u16, height: u16, spp: u32) -> Plan {
 pub fn film<P: Profile>(scene: &Scene, plan: &Plan) -> Film {
     let compiled = compile(scene, plan.width, plan.height, Integrator::Path);
     direct::film::<P>(&compiled, plan)
+}
+
+/// The film that any fleet must end with by `profile`'s own integrator and sampler.
+pub fn film_by(profile: Arithmetic, scene: &Scene, plan: &Plan) -> Film {
+    let compiled = compile(scene, plan.width, plan.height, profile.integrator());
+    direct::film_as(profile, profile.sampler(), &compiled, plan)
 }
 
 /// `P`'s picture and its double's, sample by sample, with their noise.

@@ -58,7 +58,7 @@ pub struct PictureOptions {
     /// What to compare with: `none`, or an OpenEXR file [default: computed in double precision, and kept]
     #[arg(long, value_name = "none|FILE", value_parser = OsStringValueParser::new().map(Reference::from))]
     pub reference: Option<Reference>,
-    /// Samples per pixel of the computed reference, a multiple of 4 [default: as many as it takes for a third of the picture's noise]
+    /// Samples per pixel of the computed reference, a multiple of 4 [default: as many as it takes for half of the picture's noise]
     #[arg(long, value_name = "N", value_parser = samples_per_pixel, allow_negative_numbers = true)]
     pub reference_spp: Option<u32>,
     /// Give the cores up when none has said a word for so long [default: wait while their processes live; of cores started
@@ -103,8 +103,8 @@ pub struct RenderOptions {
     /// Compute in soft float instead of fixed point, by the profile's formulas, in an image that does not fit a core's memory
     #[arg(long, value_name = "f32|f64", value_enum)]
     pub soft_float: Option<SoftFloat>,
-    /// Compute as `precise` does but for one choice, which is the published system's, in an image of its own
-    #[arg(long, value_name = "CHOICE", value_parser = choice(), conflicts_with_all = ["soft_float", "profile"])]
+    /// Compute as `precise` does by paths, but for one choice, which is the published system's, in an image of its own
+    #[arg(long, value_name = "CHOICE", value_parser = choice(), conflicts_with_all = ["soft_float", "profile", "sampler"])]
     pub choice: Option<Choice>,
     /// UDP port of the collector [default: any free one]
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
@@ -112,6 +112,22 @@ pub struct RenderOptions {
     /// Say what is missing on this machine, and stop instead of installing it
     #[arg(long)]
     pub no_install: bool,
+}
+
+impl RenderOptions {
+    /// The picture. One by a choice of its own is by paths and independent random numbers, if it is not said otherwise: what its image has.
+    pub fn picture(&self) -> PictureOptions {
+        let own = |arithmetic: Arithmetic| (arithmetic.integrator(), arithmetic.sampler());
+        let (integrator, sampler) = match self.choice {
+            Some(_) => own(Arithmetic::Paper),
+            None => own(self.picture.profile),
+        };
+        PictureOptions {
+            integrator: self.picture.integrator.or(Some(integrator)),
+            sampler: self.picture.sampler.or(Some(sampler)),
+            ..self.picture.clone()
+        }
+    }
 }
 
 impl PictureOptions {

@@ -99,7 +99,7 @@ impl Results<'_> {
             }),
             None => {
                 let render = |job: &reference::Job| self.rendered_reference(job);
-                effort::reference_for(image, termination, REFERENCE_SEED, render)
+                effort::reference_for(image, options.integrator(), termination, REFERENCE_SEED, render)
             }
         }
     }
@@ -440,7 +440,7 @@ fn noise(picture: f64, reference: f64, error: &report::ErrorFigures) -> String {
     let tile = error.reference_tile_noise_share.unwrap_or_default();
     let most = effort::MOST_SHARE;
     let too_much = if reference > most * picture || tile > most {
-        "; the reference's is more than a third of the picture's: give it more by --reference-spp"
+        "; the reference's is more than half of the picture's: give it more by --reference-spp"
     } else {
         ""
     };

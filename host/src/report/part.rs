@@ -78,7 +78,7 @@ impl<'a> Workshop<'a> {
         let scene = workspace::file(SCENE)?;
         let experiment = if self.quick {
             Experiment {
-                energy: Some((QUICK_SIZE, 64)),
+                energy: Some((QUICK_SIZE, 256)),
                 ..Experiment::quick(scene, vec![1, 2], self.install)
             }
         } else {

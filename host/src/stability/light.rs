@@ -18,7 +18,7 @@ pub(super) const PART: Part = Part {
 const SIZE: [u16; 2] = [32, 24];
 /// Samples a pixel of the pilot, and the most.
 const PILOT: u64 = 1024;
-const MOST: u64 = 1 << 17;
+const MOST: u64 = 1 << 14;
 /// What a picture may be off by, as a share of its mean.
 const BIAS: f64 = 2e-4;
 /// The standard error that is aimed at.
@@ -32,18 +32,65 @@ const HEAD: [&str; 6] = ["scene", "emitters", "samples", "bias, %", "arithmetic,
 fn measure(effort: &Effort) -> Result<Findings, Error> {
     let files = scene_files(&SCENE_FOLDERS)?;
     let mut table = Table::new("Looking for light", UNITS, &HEAD);
-    let mut faults = Vec::new();
+    let (mut faults, mut all) = (Vec::new(), Pooled::default());
     for file in &files {
         let scene = Scene::load(file)?;
         let found = Found::of(effort, &scene)?;
         table.push(found.row(&scene.name, files.len()));
         faults.extend(found.faults(&scene.name, files.len()));
+        all.add(&found.independent);
     }
+    table.push(all.row());
+    faults.extend(all.fault());
     Ok(Findings {
         tables: vec![table],
         faults,
         ..Findings::default()
     })
+}
+
+/// The biases of all scenes, each with the weight that its noise gives it: what one scene alone is too noisy to tell.
+#[derive(Default)]
+struct Pooled {
+    weights: f64,
+    biases: f64,
+}
+
+impl Pooled {
+    fn add(&mut self, found: &Comparison) {
+        if let (Some(bias), Some(error)) = (found.bias, found.bias_standard_error)
+            && error > 0.0
+        {
+            let weight = 1.0 / (error * error);
+            self.weights += weight;
+            self.biases += weight * bias;
+        }
+    }
+
+    /// The bias, and its standard error.
+    fn bias(&self) -> (f64, f64) {
+        (self.biases / self.weights, self.weights.sqrt().recip())
+    }
+
+    fn row(&self) -> Vec<String> {
+        let (bias, error) = self.bias();
+        let bias = format!("{} ± {}", figure(100.0 * bias), figure(100.0 * error));
+        let nothing = String::new;
+        vec![
+            "all together".to_owned(),
+            nothing(),
+            nothing(),
+            bias,
+            nothing(),
+            nothing(),
+        ]
+    }
+
+    fn fault(&self) -> Option<String> {
+        let (bias, error) = self.bias();
+        let is_off = bias.abs() > BIAS + SURE * error;
+        is_off.then(|| format!("all scenes together: the mean is off by {bias:+.6} ± {error:.6}"))
+    }
 }
 
 /// A scene beside its reference.

@@ -2,5 +2,4 @@
 //! `cargo test --release -p whole-system --test figures`.
 
 mod choices;
-mod report;
 mod scaling;

@@ -12,7 +12,7 @@ use host::render::options::RenderOptions;
 use host::render::render;
 use host::scene::Scene;
 use tracer::profile::Precise;
-use whole_system::{film, plan, repository};
+use whole_system::{film_by, plan, repository};
 
 #[derive(Parser)]
 struct Flags {
@@ -54,7 +54,7 @@ fn every_scene_is_the_same_picture_on_boards_and_on_the_host() {
         .zip(Board::ALL.into_iter().cycle());
     for (path, boards) in all.chain(turns.map(|(path, board)| (path, vec![board]))) {
         let scene = Scene::load(&path).unwrap();
-        let expected = film::<Precise>(&scene, &plan::<Precise>(20, 16, 8)).sha256();
+        let expected = film_by(Arithmetic::Precise, &scene, &plan::<Precise>(20, 16, 8)).sha256();
         for board in boards {
             let found = sha256(&path, board, out.path());
             assert_eq!(found, expected, "{} on {board}", path.display());

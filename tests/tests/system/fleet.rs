@@ -7,13 +7,14 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use clap::Parser;
+use host::firmware::arithmetic::Arithmetic;
 use host::render::options::RenderOptions;
 use host::render::{Finished, RenderError, render};
 use host::scene::{MAX_SPHERES, Scene};
 use serde_json::Value;
 use tempfile::TempDir;
 use tracer::profile::{Paper, Precise};
-use whole_system::{cornell, film, plan, repository, script};
+use whole_system::{cornell, film, film_by, plan, repository, script};
 
 #[derive(Parser)]
 struct Flags {
@@ -101,7 +102,7 @@ fn kill(process: &str) {
 
 #[test]
 fn every_fleet_ends_with_the_same_picture() {
-    let expected = film::<Precise>(&cornell(), &plan::<Precise>(64, 48, 16)).sha256();
+    let expected = film_by(Arithmetic::Precise, &cornell(), &plan::<Precise>(64, 48, 16)).sha256();
     for flags in [
         "--cores 1",
         "--cores 2",
@@ -128,7 +129,7 @@ fn paper_runs_on_the_emulated_core_as_on_the_host() {
 
 #[test]
 fn odd_sizes_and_last_passes_are_covered() {
-    let expected = film::<Precise>(&cornell(), &plan::<Precise>(33, 25, 68)).sha256();
+    let expected = film_by(Arithmetic::Precise, &cornell(), &plan::<Precise>(33, 25, 68)).sha256();
     assert_eq!(plain("--size 33x25 --spp 68 --cores 2").sha256(), expected);
 }
 
@@ -152,7 +153,7 @@ fn the_largest_scene_fits_a_core() {
     std::fs::write(&file, &text).unwrap();
     let scene = Scene::load(&file).unwrap();
     assert_eq!(scene.spheres.len(), MAX_SPHERES);
-    let expected = film::<Precise>(&scene, &plan::<Precise>(32, 24, 8)).sha256();
+    let expected = film_by(Arithmetic::Precise, &scene, &plan::<Precise>(32, 24, 8)).sha256();
     let words = "render --size 32x24 --spp 8 --reference none --cores 1 --out";
     let words = words
         .split(' ')
@@ -181,7 +182,7 @@ fn a_sample_costs_no_more_than_12_000_instructions() {
 
 #[test]
 fn a_killed_core_costs_time_and_nothing_else() {
-    let expected = film::<Precise>(&cornell(), &plan::<Precise>(128, 96, 64)).sha256();
+    let expected = film_by(Arithmetic::Precise, &cornell(), &plan::<Precise>(128, 96, 64)).sha256();
     let done = run("--size 128x96 --spp 64 --cores 3", |out| {
         let process = process_of(out, 1);
         thread::sleep(Duration::from_millis(1000));

@@ -15,7 +15,7 @@ use object::{Object, ObjectSection, ObjectSymbol};
 use serde_json::Value;
 use tracer::profile::Precise;
 use tracer::scene::Capabilities;
-use whole_system::{cornell, film, plan, repository, toolchain};
+use whole_system::{cornell, film_by, plan, repository, toolchain};
 
 #[derive(Parser)]
 struct Flags {
@@ -112,7 +112,7 @@ fn a_fleet_s_log_tells_of_every_unit_and_changes_no_pixel() {
     let out = tempfile::tempdir().unwrap();
     let flags = "--size 64x48 --spp 16 --reference none --cores 2 --board versatilepb,mps2-an385 --log debug";
     let (report, lines) = rendered(flags, out.path());
-    let expected = film::<Precise>(&cornell(), &plan::<Precise>(64, 48, 16)).sha256();
+    let expected = film_by(Arithmetic::Precise, &cornell(), &plan::<Precise>(64, 48, 16)).sha256();
     assert_eq!(report["image_sha256"], expected);
 
     let cores = report["per_core"].as_array().unwrap();
