@@ -4,6 +4,7 @@ use maud::{Markup, html};
 
 use super::super::part::{Error, Part, Workshop};
 use super::super::plot::{Along, Axis, Line, Plot, Point, Rule, Series, number};
+use super::super::prose::prose;
 use super::super::section::{Figure, Section};
 use super::super::table::Table;
 use crate::bench::scaling::published::{Assumption, CORE_RATE, CORES, WIRE};
@@ -48,20 +49,20 @@ fn make(workshop: &Workshop<'_>, _effort: &Effort) -> Result<Section, Error> {
     Ok(Section {
         name: PART.name,
         title: "The paper's figure 4, and a million cores",
-        prose: prose(outcome),
+        prose: about(outcome),
         commands: &["cargo xtask bench scaling"],
         figures,
     })
 }
 
-fn prose(outcome: &Outcome) -> Markup {
+fn about(outcome: &Outcome) -> Markup {
     let scaling = &outcome.scaling;
     let [width, height] = scaling.size;
     let million = outcome.million.first();
     html! {
         p { "The Cornell box, " (width) "x" (height) " pixels, by " code { (scaling.profile) } " with paths, as many emulated cores as the plot says, and the time that \
              as many real ones of 200 MHz would take. Of this:" }
-        ul { @for line in &scaling.method { li { (line) } } }
+        ul { @for line in &scaling.method { li { (prose(line)) } } }
         p { "A packet takes its core " (number(scaling.packet_cycles)) " cycles. Where the wire carries 1,500 packets a second, packets must be few and full: the \
              samples that they need follow from the rate of the quickest stretch of the picture, and a sweep says how many more keep " (WANTED) " of linear, with \
              the start, when all cores say HELLO at once." }
