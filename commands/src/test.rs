@@ -17,14 +17,11 @@ use host::platform::workspace;
 use host::scene::{Integrator, Scene, compile};
 
 use crate::step::{cargo, seconds, shown, step, succeed};
-use crate::{SetUp, check, fuzz, size, verify};
+use crate::{SetUp, check, size, verify};
 
 /// Arguments of `test`.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// How long each fuzz target runs
-    #[arg(long, value_name = "N", default_value_t = fuzz::SECONDS)]
-    fuzz_seconds: u32,
     #[command(flatten)]
     set_up: SetUp,
 }
@@ -83,8 +80,6 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
             "--show-output",
         ])?)
     })?;
-    step("fuzz targets", fuzz::build)?;
-    step("fuzzing", || fuzz::all(arguments.fuzz_seconds))?;
     say(format!("all passed in {}", seconds(start.elapsed())))?;
     Ok(ExitCode::SUCCESS)
 }

@@ -31,8 +31,8 @@ pub(crate) struct Arguments {
     set_up: SetUp,
 }
 
-/// How long a target runs in `cargo xtask test`.
-pub(crate) const SECONDS: u32 = 4;
+/// How long a target runs unless it is said.
+const SECONDS: u32 = 4;
 
 /// Linux's folder in memory, for the targets whose readers want a file: a disk takes longer than they do.
 const MEMORY: &str = "/dev/shm";
@@ -69,7 +69,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
 }
 
 /// Lints and builds the targets, and builds our own crates with what tells libFuzzer the ways they go.
-pub(crate) fn build() -> anyhow::Result<()> {
+fn build() -> anyhow::Result<()> {
     succeed(cargo(&[
         "clippy",
         "--release",
@@ -85,7 +85,7 @@ pub(crate) fn build() -> anyhow::Result<()> {
 }
 
 /// Runs all targets, two at a time.
-pub(crate) fn all(seconds: u32) -> anyhow::Result<()> {
+fn all(seconds: u32) -> anyhow::Result<()> {
     let folders = &Folders::new()?;
     for pair in Target::value_variants().chunks(2) {
         thread::scope(|scope| {
