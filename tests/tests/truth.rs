@@ -76,8 +76,8 @@ fn with_noise(picture: Picture) -> Estimate {
 /// What a wide picture shows, tracer and reference work out each for itself.
 #[test]
 fn a_wide_picture_is_the_reference_s() {
-    let precise = estimate::<Precise>(&cornell(), &plan::<Precise>(64, 36, 256));
-    let reference = reference(&cornell(), 64, 36, 256);
+    let precise = estimate::<Precise>(&cornell(), &plan::<Precise>(64, 36, 128));
+    let reference = reference(&cornell(), 64, 36, 128);
     let found = compare(
         &reference.pooled_noise(precise, Integrator::Path),
         &reference.estimate,
@@ -91,9 +91,9 @@ fn a_wide_picture_is_the_reference_s() {
 #[test]
 fn a_tiny_picture_is_the_reference_s() {
     let (width, height) = (16, 12);
-    let reference = reference(&cornell(), width, height, 8192);
+    let reference = reference(&cornell(), width, height, 1024);
     for integrator in [Integrator::Path, Integrator::NextEvent] {
-        let precise = estimate_by::<Precise>(&cornell(), &plan::<Precise>(width, height, 8192), integrator);
+        let precise = estimate_by::<Precise>(&cornell(), &plan::<Precise>(width, height, 2048), integrator);
         let found = compare(&precise, &reference.estimate).unwrap();
         show(&format!("precise, {width}x{height}, {integrator}"), &found);
         assert!(
@@ -104,12 +104,12 @@ fn a_tiny_picture_is_the_reference_s() {
     }
 }
 
-/// The noise of both means is 0.1 % together, half of the bound: most of it that of 6 million samples of paths that look for light. The
+/// The noise of both means is 0.1 % together, half of the bound: most of it that of 3 million samples of paths that look for light. The
 /// reference has as many, and a quarter of their variance for each.
 #[test]
 fn precise_is_as_bright_as_double_precision() {
     let reference = grey(
-        reference(&cornell(), 256, 192, 128)
+        reference(&cornell(), 256, 192, 64)
             .estimate
             .picture
             .mean()
@@ -120,7 +120,7 @@ fn precise_is_as_bright_as_double_precision() {
         "the reference itself: {reference}"
     );
     let compiled = compile(&cornell(), 256, 192, Integrator::NextEvent);
-    let precise = direct::film::<Stratified<Precise>>(&compiled, &plan::<Precise>(256, 192, 128));
+    let precise = direct::film::<Stratified<Precise>>(&compiled, &plan::<Precise>(256, 192, 64));
     let precise = grey(precise.picture().mean().unwrap());
     let bias = precise / reference - 1.0;
     println!(
@@ -142,10 +142,10 @@ fn no_tile_of_precise_is_further_off_than_chance_allows() {
 #[test]
 fn no_tile_is_off_in_scenes_of_other_kinds() {
     // As many samples as give the reference less noise than the picture has.
-    for (name, spp) in [("open", 64), ("tiny", 128), ("mirrors", 256)] {
+    for (name, spp) in [("open", 32), ("tiny", 64), ("mirrors", 128)] {
         let scene = Scene::load(&repository(&format!("tests/scenes/{name}.toml"))).unwrap();
         let reference = reference(&scene, 64, 48, spp);
-        let precise = estimate::<Precise>(&scene, &plan::<Precise>(64, 48, 256));
+        let precise = estimate::<Precise>(&scene, &plan::<Precise>(64, 48, 128));
         let found = compare(
             &reference.pooled_noise(precise, Integrator::Path),
             &reference.estimate,

@@ -6,6 +6,7 @@ use super::{Effort, Error, Findings, Part, Table};
 use crate::firmware::arithmetic::{Arithmetic, Sampler};
 use crate::oracle::compare::{Comparison, compare, sidak_threshold};
 use crate::oracle::lockstep;
+use crate::platform::console::note;
 use crate::scene::{Integrator, Scene, compile};
 
 /// The part.
@@ -36,7 +37,10 @@ fn measure(effort: &Effort) -> Result<Findings, Error> {
     for file in &files {
         let scene = Scene::load(file)?;
         let found = Found::of(effort, &scene)?;
-        table.push(found.row(&scene.name, files.len()));
+        let row = found.row(&scene.name, files.len());
+        // At once: all scenes together take an hour.
+        note(row.join("  "));
+        table.push(row);
         faults.extend(found.faults(&scene.name, files.len()));
         all.add(&found.independent);
     }
