@@ -97,7 +97,7 @@ fn a_tiny_picture_is_the_reference_s() {
         let found = compare(&precise, &reference.estimate).unwrap();
         show(&format!("precise, {width}x{height}, {integrator}"), &found);
         assert!(
-            found.bias.unwrap().abs() < 0.01,
+            found.bias.unwrap().abs() < 0.02,
             "5 % apart if one sees through it"
         );
         assert_eq!(found.tiles.failed().count(), 0);
