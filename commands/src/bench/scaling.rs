@@ -33,15 +33,13 @@ pub(crate) struct Arguments {
     set_up: SetUp,
 }
 
-/// Up to the published number of cores.
-const CORES: [u16; 8] = [1, 2, 4, 8, 16, 32, 64, scaling::published::CORES];
 const FEW_CORES: [u16; 3] = [1, 2, 4];
 
 pub(crate) fn run(arguments: &Arguments, interrupted: &AtomicBool) -> anyhow::Result<ExitCode> {
     let (experiment, usual): (fn(_, _, _) -> _, &[u16]) = if arguments.quick {
         (Experiment::quick, &FEW_CORES)
     } else {
-        (Experiment::full, &CORES)
+        (Experiment::full, &scaling::published::FIGURE_4)
     };
     let cores = if arguments.cores.is_empty() {
         usual.to_vec()

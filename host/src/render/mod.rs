@@ -284,7 +284,7 @@ impl Job {
 
 /// Renders a picture on cores of this host.
 pub fn render(options: &RenderOptions, interrupted: &AtomicBool) -> Result<Finished, RenderError> {
-    Job::new(&options.picture())?.render(options, None, interrupted)
+    Job::new(&options.picture)?.render(options, None, interrupted)
 }
 
 /// What kind of image the cores have.
@@ -370,7 +370,7 @@ impl Job {
                 (Box::new(fleet) as Box<dyn Fleet>, origin)
             }
             None => {
-                let fleet = NativeFleet::start(&blocks, self.options.profile, self.options.sampler())?;
+                let fleet = NativeFleet::start(&blocks, options.picture.profile, options.picture.sampler())?;
                 let origin = Origin {
                     backend: "native",
                     boards: Vec::new(),

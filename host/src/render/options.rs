@@ -103,7 +103,7 @@ pub struct RenderOptions {
     /// Compute in soft float instead of fixed point, by the profile's formulas, in an image that does not fit a core's memory
     #[arg(long, value_name = "f32|f64", value_enum)]
     pub soft_float: Option<SoftFloat>,
-    /// Compute as `precise` does by paths, but for one choice, which is the published system's, in an image of its own
+    /// Compute as `precise` does but for one choice, which is the published system's, in an image of its own
     #[arg(long, value_name = "CHOICE", value_parser = choice(), conflicts_with_all = ["soft_float", "profile", "sampler"])]
     pub choice: Option<Choice>,
     /// UDP port of the collector [default: any free one]
@@ -112,22 +112,6 @@ pub struct RenderOptions {
     /// Say what is missing on this machine, and stop instead of installing it
     #[arg(long)]
     pub no_install: bool,
-}
-
-impl RenderOptions {
-    /// The picture. One by a choice of its own is by paths and independent random numbers, if it is not said otherwise: what its image has.
-    pub fn picture(&self) -> PictureOptions {
-        let own = |arithmetic: Arithmetic| (arithmetic.integrator(), arithmetic.sampler());
-        let (integrator, sampler) = match self.choice {
-            Some(_) => own(Arithmetic::Paper),
-            None => own(self.picture.profile),
-        };
-        PictureOptions {
-            integrator: self.picture.integrator.or(Some(integrator)),
-            sampler: self.picture.sampler.or(Some(sampler)),
-            ..self.picture.clone()
-        }
-    }
 }
 
 impl PictureOptions {

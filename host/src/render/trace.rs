@@ -31,7 +31,7 @@ pub struct Traced {
 /// Renders a picture, and records a core's packets in `core-N.pcap` among the results. A core that was started again has a file
 /// for each of its lives: `core-N.pcap`, `core-N.2.pcap` and so on.
 pub fn trace(options: &TraceOptions, interrupted: &AtomicBool) -> Result<Traced, RenderError> {
-    let job = Job::new(&options.render.picture())?;
+    let job = Job::new(&options.render.picture)?;
     job.check_core(options.core)?;
     if options.render.backend != Backend::Qemu {
         return Err(RenderError::NoNetwork);

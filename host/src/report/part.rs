@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 
 use super::section::Section;
 use crate::bench::samples::{self, Kinds, Row, Series};
-use crate::bench::scaling::published::CORES;
+use crate::bench::scaling::published::FIGURE_4;
 use crate::bench::scaling::{self, Experiment, Outcome};
 use crate::firmware::board::Board;
 use crate::platform::setup::Install;
@@ -82,7 +82,7 @@ impl<'a> Workshop<'a> {
                 ..Experiment::quick(scene, vec![1, 2], self.install)
             }
         } else {
-            Experiment::full(scene, vec![1, 2, 4, 8, 16, 32, 64, CORES], self.install)
+            Experiment::full(scene, FIGURE_4.to_vec(), self.install)
         };
         let experiment = Experiment {
             runs_larger: false,

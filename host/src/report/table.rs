@@ -16,11 +16,11 @@ pub struct Table {
 
 impl Table {
     /// A table without rows.
-    pub fn new(caption: impl Into<String>, head: Vec<String>) -> Self {
+    pub fn new(caption: impl Into<String>, head: impl IntoIterator<Item = impl Into<String>>) -> Self {
         Self {
             caption: caption.into(),
             notes: String::new(),
-            head,
+            head: head.into_iter().map(Into::into).collect(),
             rows: Vec::new(),
         }
     }

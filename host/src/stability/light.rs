@@ -38,7 +38,7 @@ fn measure(effort: &Effort) -> Result<Findings, Error> {
         let scene = Scene::load(file)?;
         let found = Found::of(effort, &scene)?;
         let row = found.row(&scene.name, files.len());
-        // At once: all scenes together take an hour.
+        // At once, because all scenes take long.
         note(row.join("  "));
         table.push(row);
         faults.extend(found.faults(&scene.name, files.len()));

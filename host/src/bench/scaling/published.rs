@@ -18,6 +18,9 @@ pub struct Assumption {
 /// Cores that the published system rendered on, in figure 4 the most.
 pub const CORES: u16 = 136;
 
+/// Numbers of cores in figure 4, up to the published one.
+pub const FIGURE_4: [u16; 8] = [1, 2, 4, 8, 16, 32, 64, CORES];
+
 /// Clock of an ARM968E-S of SpiNNaker: its makers' figure.
 pub const CLOCK: Assumption = Assumption {
     what: "clock of a core",

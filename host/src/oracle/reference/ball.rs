@@ -112,11 +112,13 @@ impl Balls {
         let ball = self.balls[number];
         let from_centre = ray.origin - ball.centre;
         let is_outside = from_centre.dot(from_centre) > ball.radius * ball.radius;
-        let outward = from_centre.normalised();
-        (is_outside && outward.dot(ray.direction) >= 0.0).then(|| Hit {
-            ball: number,
-            point: ball.centre + outward * ball.radius,
-            outward,
+        (is_outside && from_centre.dot(ray.direction) >= 0.0).then(|| {
+            let outward = from_centre.normalised();
+            Hit {
+                ball: number,
+                point: ball.centre + outward * ball.radius,
+                outward,
+            }
         })
     }
 

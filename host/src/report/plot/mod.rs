@@ -69,6 +69,15 @@ impl Series {
             named: true,
         }
     }
+
+    /// Points that a line joins.
+    pub fn joined(name: impl Into<String>, look: usize, points: Vec<Point>) -> Self {
+        Self {
+            line: Line::Solid,
+            named: false,
+            ..Self::of_named(name, look, points)
+        }
+    }
 }
 
 /// How points are joined.

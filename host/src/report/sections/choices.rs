@@ -446,7 +446,7 @@ fn table(found: &[Found]) -> Table {
         "beside",
         "efficiency",
     ];
-    let mut table = Table::new("Each choice alone", head.map(str::to_owned).to_vec()).with_notes(
+    let mut table = Table::new("Each choice alone", head).with_notes(
         "Efficiency: geometric mean over pixels of the default's cycles times variance over the row's; above 1 a picture of the same noise takes fewer cycles.",
     );
     let default = found.iter().find(|found| found.is_default);

@@ -99,7 +99,7 @@ fn estimators(energy: &Energy) -> Table {
         "variance of a sample",
         "samples a pixel",
     ];
-    let mut table = Table::new("What a picture takes", head.map(str::to_owned).to_vec());
+    let mut table = Table::new("What a picture takes", head);
     for cost in &energy.estimators {
         table.push(vec![
             cost.estimator.clone(),
@@ -121,7 +121,7 @@ fn machines(energy: &Energy) -> Table {
         "samples/J",
         "pictures/kJ",
     ];
-    let mut table = Table::new("Machines", head.map(str::to_owned).to_vec());
+    let mut table = Table::new("Machines", head);
     for row in &energy.rows {
         table.push(vec![
             row.machine.to_owned(),

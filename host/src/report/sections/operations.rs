@@ -185,7 +185,7 @@ fn table(rows: &[Row]) -> Table {
         "ulp",
         "inputs",
     ];
-    let mut table = Table::new("All operations", head.map(str::to_owned).to_vec())
+    let mut table = Table::new("All operations", head)
         .with_notes("In line, on the ARMv5TE. Errors are in ulp, which are what the column says.");
     for row in grouped(rows).into_iter().flatten() {
         table.push(vec![
@@ -205,7 +205,7 @@ fn table(rows: &[Row]) -> Table {
 
 fn quoted() -> Table {
     let head = ["operation", "library", "instructions", "worst error, ulp"];
-    let mut table = Table::new("Libraries in C", head.map(str::to_owned).to_vec()).with_notes(
+    let mut table = Table::new("Libraries in C", head).with_notes(
         "Measured once beforehand on the same emulated core (gcc 12, `-O3 -mcpu=arm968e-s -marm`), in instructions and not by a command \
          of this repository; constants of `host::bench::operations::anchors`.",
     );

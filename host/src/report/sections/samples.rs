@@ -151,7 +151,7 @@ fn factors(rows: &[Row]) -> Table {
         "rmse, at most",
         "efficiency",
     ];
-    let mut table = Table::new("Beside the published machine", head.map(str::to_owned).to_vec()).with_notes(format!(
+    let mut table = Table::new("Beside the published machine", head).with_notes(format!(
         "On the ARMv5TE. The published machine spent {} cycles on a sample: a core of {} MHz made {} a second ({}). Ours are of a core alone, without its network. Bias and rmse are beside the \
          independent reference of the same way to end a path, ± one standard error.",
         number(PUBLISHED_CYCLES.round()),

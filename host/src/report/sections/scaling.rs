@@ -3,7 +3,7 @@
 use maud::{Markup, html};
 
 use super::super::part::{Error, Part, Workshop};
-use super::super::plot::{Along, Axis, Line, Plot, Point, Rule, Series, number};
+use super::super::plot::{Along, Axis, Plot, Point, Rule, Series, number};
 use super::super::prose::prose;
 use super::super::section::{Figure, Section};
 use super::super::table::Table;
@@ -99,19 +99,12 @@ fn name(series: &scaling::Series) -> String {
 fn drawn(scaling: &Scaling, value: impl Fn(&scaling::Point) -> f64) -> Vec<Series> {
     let series = scaling.series.iter().enumerate();
     series
-        .map(|(look, series)| Series {
-            name: name(series),
-            points: series
-                .points
-                .iter()
-                .map(|point| {
-                    let name = if point.run { "run" } else { "modelled" };
-                    Point::new(name, [point.cores.into(), value(point)])
-                })
-                .collect(),
-            line: Line::Solid,
-            look,
-            named: false,
+        .map(|(look, series)| {
+            let points = series.points.iter().map(|point| {
+                let name = if point.run { "run" } else { "modelled" };
+                Point::new(name, [point.cores.into(), value(point)])
+            });
+            Series::joined(name(series), look, points.collect())
         })
         .collect()
 }
@@ -120,15 +113,14 @@ fn rates(scaling: &Scaling) -> Plot {
     let mut series = drawn(scaling, |point| point.samples_per_second);
     let cores = scaling.series.iter().flat_map(|series| &series.points);
     let most = cores.map(|point| point.cores).max().unwrap_or(CORES);
-    series.push(Series {
-        name: "published, a core's rate times cores".to_owned(),
-        points: [1.0, f64::from(most)]
-            .map(|cores| Point::new("published", [cores, cores * CORE_RATE.value]))
-            .to_vec(),
-        line: Line::Solid,
-        look: series.len(),
-        named: false,
-    });
+    let published = [1.0, f64::from(most)]
+        .map(|cores| Point::new("published", [cores, cores * CORE_RATE.value]))
+        .to_vec();
+    series.push(Series::joined(
+        "published, a core's rate times cores",
+        series.len(),
+        published,
+    ));
     Plot {
         about: "With 1,500 packets a second, small packets bend the curve; the number of samples that is derived straightens it.".to_owned(),
         series,
@@ -159,16 +151,11 @@ fn packets(scaling: &Scaling) -> Plot {
         let points = derivation.sweep.iter();
         let points =
             points.map(|sweep| Point::new("", [sweep.samples_per_packet.into(), sweep.share_of_linear]));
-        Series {
-            name: format!(
-                "{}, {} cores (modelled)",
-                derivation.termination, derivation.cores
-            ),
-            points: points.collect(),
-            line: Line::Solid,
-            look,
-            named: false,
-        }
+        let name = format!(
+            "{}, {} cores (modelled)",
+            derivation.termination, derivation.cores
+        );
+        Series::joined(name, look, points.collect())
     });
     Plot {
         about: format!(
@@ -202,7 +189,7 @@ fn derivations(all: &[Derivation]) -> Table {
     ];
     let mut table = Table::new(
         "Samples a packet, derived",
-        head.map(str::to_owned).to_vec(),
+        head,
     )
     .with_notes(
         "Cores over packets a second, less a packet's own time, is what a core may render for a packet; times its samples a second.",
@@ -237,7 +224,7 @@ fn runs(all: &[Run]) -> Table {
         "cycles/instruction",
         "picture",
     ];
-    let mut table = Table::new("What was run", head.map(str::to_owned).to_vec());
+    let mut table = Table::new("What was run", head);
     for run in all {
         let price = run.cycles_per_instruction.map_or_else(
             || "-".to_owned(),
@@ -279,7 +266,7 @@ fn boards(million: &Million) -> Table {
         number(million.samples_per_second),
         number(million.samples_per_joule)
     );
-    let mut table = Table::new(title, head.map(str::to_owned).to_vec()).with_notes(notes);
+    let mut table = Table::new(title, head).with_notes(notes);
     for flood in &million.packets {
         table.push(vec![
             number(flood.samples_per_packet.into()),
@@ -298,7 +285,7 @@ fn boards(million: &Million) -> Table {
 /// Figures that results rest on and that nobody here has measured, with their sources.
 pub(super) fn assumed(all: &[Assumption]) -> Table {
     let head = ["figure", "value", "unit", "source"];
-    let mut table = Table::new("Assumptions", head.map(str::to_owned).to_vec());
+    let mut table = Table::new("Assumptions", head);
     for one in all {
         table.push(vec![
             one.what.to_owned(),

@@ -5,7 +5,7 @@ use tracer::unit::{Plan, Termination};
 
 use super::super::part::{Error, Part, SCENE, Workshop};
 use super::super::picture::Image;
-use super::super::plot::{Along, Axis, Line, Plot, Point, Rule, Series, number};
+use super::super::plot::{Along, Axis, Plot, Point, Rule, Series, number};
 use super::super::section::{Figure, Section};
 use super::super::table::Table;
 use crate::firmware::arithmetic::{Arithmetic, Sampler};
@@ -104,17 +104,10 @@ fn found(
 }
 
 fn radial(all: &[Found]) -> Plot {
-    let series = all.iter().enumerate().map(|(look, found)| Series {
-        name: found.sampler.to_string(),
-        points: found
-            .spectrum
-            .radial()
-            .into_iter()
-            .map(|(frequency, power)| Point::new("", [frequency, power]))
-            .collect(),
-        line: Line::Solid,
-        look,
-        named: false,
+    let series = all.iter().enumerate().map(|(look, found)| {
+        let rings = found.spectrum.radial().into_iter();
+        let points = rings.map(|(frequency, power)| Point::new("", [frequency, power]));
+        Series::joined(found.sampler.to_string(), look, points.collect())
     });
     Plot {
         series: series.collect(),
@@ -138,7 +131,7 @@ fn strongest(all: &[Found]) -> Table {
         "the strongest frequency",
         "white noise exceeds once in 100",
     ];
-    let mut table = Table::new("The strongest frequency", head.map(str::to_owned).to_vec());
+    let mut table = Table::new("The strongest frequency", head);
     for found in all {
         let (strongest, threshold) = found.spectrum.strongest();
         table.push(vec![

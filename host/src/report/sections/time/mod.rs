@@ -355,7 +355,7 @@ fn floors(courses: &[Course]) -> Table {
         "bias, %",
         "standard error, %",
     ];
-    let mut table = Table::new("What arithmetic leaves", head.map(str::to_owned).to_vec()).with_notes(
+    let mut table = Table::new("What arithmetic leaves", head).with_notes(
         "Beside the same samples in double precision, whose own floor is not known: the root of the mean squared difference with the noise \
          of paths that parted taken off, and what it may be at most.",
     );
