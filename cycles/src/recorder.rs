@@ -1,6 +1,7 @@
 //! Writes a flow down while a core runs. Whoever runs the core says what it does; the plugin of QEMU's, or a test.
 
 use std::collections::HashMap;
+use std::ops::Range;
 
 use crate::branch::cut;
 use crate::flow::{Block, Edge, Flow, Instruction, Isa, Recording};
@@ -19,9 +20,23 @@ pub struct Wanted {
     pub code_end: u32,
 }
 
+/// Why there is no recording.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum NoRecording {
+    /// A call has not returned.
+    #[error("the core ended within the recorded function")]
+    Unfinished,
+    /// What is recorded is of one instruction set.
+    #[error(
+        "the recorded function runs code of another instruction set at {0:#x}: what it calls must be compiled as it is"
+    )]
+    Foreign(u32),
+}
+
 /// A block, and what was counted of it.
 #[derive(Debug)]
 struct Seen {
+    /// Without instructions where they are of another instruction set.
     block: Block,
     start: u32,
     end: u32,
@@ -41,6 +56,7 @@ const NONE: usize = usize::MAX;
 pub struct Recorder {
     wanted: Wanted,
     known: HashMap<Vec<Instruction>, usize>,
+    known_foreign: HashMap<Range<u32>, usize>,
     seen: Vec<Seen>,
     /// The block that ran last, the one before it, and where the last ended.
     last: usize,
@@ -48,6 +64,8 @@ pub struct Recorder {
     last_end: u32,
     /// Where the recorded call returns to, while one is recorded.
     returns_to: Option<u32>,
+    /// Where a recorded call first ran code of another instruction set.
+    foreign: Option<u32>,
     segments: Vec<Flow>,
 }
 
@@ -57,11 +75,13 @@ impl Recorder {
         Self {
             wanted,
             known: HashMap::new(),
+            known_foreign: HashMap::new(),
             seen: Vec::new(),
             last: NONE,
             last_but_one: NONE,
             last_end: 0,
             returns_to: None,
+            foreign: None,
             segments: Vec::new(),
         }
     }
@@ -76,24 +96,39 @@ impl Recorder {
         if let Some(&number) = self.known.get(&instructions) {
             return number;
         }
-        let (number, length) = (self.seen.len(), instructions.len());
-        self.known.insert(instructions.clone(), number);
+        let length = instructions.len();
         let block = Block {
-            instructions,
+            instructions: instructions.clone(),
             passed: vec![0; length],
             from_code: vec![0; length],
         };
-        let start = block.start().unwrap_or_default();
+        let extent = block.start().unwrap_or_default()..block.end().unwrap_or_default();
+        let number = self.add(extent, block);
+        self.known.insert(instructions, number);
+        number
+    }
+
+    /// The number of a block of another instruction set, which may call the recorded function and be returned to.
+    pub fn foreign_block(&mut self, extent: Range<u32>) -> usize {
+        if let Some(&number) = self.known_foreign.get(&extent) {
+            return number;
+        }
+        let number = self.add(extent.clone(), Block::default());
+        self.known_foreign.insert(extent, number);
+        number
+    }
+
+    fn add(&mut self, Range { start, end }: Range<u32>, block: Block) -> usize {
         self.seen.push(Seen {
             start,
-            end: block.end().unwrap_or_default(),
+            end,
             is_entry: self.wanted.entries.contains(&start),
             executions: 0,
             before: Vec::new(),
-            accessed: vec![0; length],
+            accessed: vec![0; block.instructions.len()],
             block,
         });
-        number
+        self.seen.len() - 1
     }
 
     /// Which instructions of a block have to report their accesses to memory.
@@ -142,6 +177,9 @@ impl Recorder {
 
     /// A block runs after another than the last time.
     fn follows_another(&mut self, number: usize) {
+        if self.seen[number].block.instructions.is_empty() {
+            self.foreign.get_or_insert(self.seen[number].start);
+        }
         let (last, seen) = (self.last, &mut self.seen[number]);
         if let Some(place) = seen.before.iter().position(|&(before, _)| before == last) {
             seen.before.swap(0, place);
@@ -182,15 +220,18 @@ impl Recorder {
         }
     }
 
-    /// All that was recorded, unless a call has not returned.
-    pub fn finish(mut self) -> Option<Recording> {
+    /// All that was recorded.
+    pub fn finish(mut self) -> Result<Recording, NoRecording> {
+        if let Some(address) = self.foreign {
+            return Err(NoRecording::Foreign(address));
+        }
         if self.returns_to.is_some() {
-            return None;
+            return Err(NoRecording::Unfinished);
         }
         if !self.wanted.each {
             self.end_segment();
         }
-        Some(Recording {
+        Ok(Recording {
             segments: self.segments,
         })
     }

@@ -2,7 +2,7 @@
 
 use cycles::file::{self, FileError};
 use cycles::flow::{Edge, Flow, Instruction, Isa, Recording};
-use cycles::recorder::{Recorder, Wanted};
+use cycles::recorder::{NoRecording, Recorder, Wanted};
 
 const MOV: u32 = 0xe1a0_2003;
 const BNE_BACK: u32 = 0x1aff_fffd; // bne .-4
@@ -85,7 +85,25 @@ fn what_a_core_did_not_finish_is_not_recorded() {
     let [caller, entry] = [block(0x100, &[MOV]), block(0x200, &[MOV])].map(|block| recorder.block(block));
     recorder.executed(caller);
     recorder.executed(entry);
-    assert_eq!(recorder.finish(), None);
+    assert_eq!(recorder.finish(), Err(NoRecording::Unfinished));
+}
+
+#[test]
+fn a_caller_may_be_of_another_instruction_set_but_nothing_that_is_called() {
+    let run = |calls_foreign: bool| {
+        let mut recorder = recorder(false);
+        let caller = recorder.foreign_block(0x100..0x106);
+        let entry = recorder.block(block(0x200, &[MOV, BX]));
+        let other = recorder.foreign_block(0x300..0x302);
+        let after = recorder.foreign_block(0x106..0x108);
+        let way = [caller, entry, other, after];
+        let ran = way.into_iter().filter(|&number| calls_foreign || number != other);
+        ran.for_each(|number| recorder.executed(number));
+        recorder.finish()
+    };
+    let recording = run(false).expect("it has returned");
+    assert_eq!(recording.segments[0].instructions(), 2);
+    assert_eq!(run(true), Err(NoRecording::Foreign(0x300)));
 }
 
 /// An access to a device ends a block in its middle, and the core goes on in a block that begins there.

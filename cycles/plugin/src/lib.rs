@@ -7,6 +7,7 @@ mod api;
 
 use std::ffi::{CStr, OsStr, OsString, c_char, c_int, c_uint, c_void};
 use std::io::Write;
+use std::ops::Range;
 use std::os::unix::ffi::OsStrExt;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicPtr, Ordering};
@@ -106,8 +107,12 @@ extern "C" fn translated(_id: api::Id, block: *mut api::Block) {
         let recorder = &mut plugin().recorder;
         let isa = recorder.isa();
         let instructions = handles.iter().map_while(|&handle| instruction(isa, handle));
-        let instructions = instructions.collect();
-        let number = recorder.block(instructions);
+        let instructions: Vec<_> = instructions.collect();
+        let number = if instructions.len() == handles.len() {
+            recorder.block(instructions)
+        } else {
+            recorder.foreign_block(extent(&handles))
+        };
         api::qemu_plugin_register_vcpu_tb_exec_cb(block, executed, api::NO_REGISTERS, data(number));
         let watched = recorder.watched(number);
         for (place, (&handle, _)) in handles
@@ -151,6 +156,20 @@ unsafe fn instruction(isa: Isa, handle: *const api::Instruction) -> Option<Instr
     Instruction::read(isa, address as u32, bytes)
 }
 
+/// The addresses from a block's first instruction to its end.
+///
+/// # Safety
+/// `handles` are the instructions of the block in translation.
+unsafe fn extent(handles: &[*mut api::Instruction]) -> Range<u32> {
+    // SAFETY: the caller's promise.
+    let start = |handle| unsafe { api::qemu_plugin_insn_vaddr(handle) as u32 };
+    // SAFETY: as above.
+    let length = |handle| unsafe { api::qemu_plugin_insn_size(handle) as u32 };
+    let first = handles.first().map_or(0, |&handle| start(handle));
+    let last = handles.last().map_or(0, |&handle| start(handle) + length(handle));
+    first..last
+}
+
 extern "C" fn executed(_processor: c_uint, data: *mut c_void) {
     // SAFETY: a callback.
     unsafe { plugin().recorder.executed(data.addr()) }
@@ -165,8 +184,9 @@ extern "C" fn accessed(_processor: c_uint, _info: u32, address: u64, data: *mut 
 extern "C" fn ended(_id: api::Id, _data: *mut c_void) {
     // SAFETY: it came of a box, and this is the last callback.
     let plugin = unsafe { Box::from_raw(PLUGIN.swap(std::ptr::null_mut(), Ordering::Relaxed)) };
-    let Some(recording) = plugin.recorder.finish() else {
-        return complain("the core ended within the recorded function: nothing is written");
+    let recording = match plugin.recorder.finish() {
+        Ok(recording) => recording,
+        Err(error) => return complain(&format!("nothing is written: {error}")),
     };
     let written = std::fs::write(&plugin.file, file::encode(&recording));
     if let Err(error) = written {

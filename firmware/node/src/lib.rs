@@ -22,6 +22,7 @@
 
 mod checksum;
 mod clock;
+mod division;
 pub mod ethernet;
 mod fault;
 mod leases;

@@ -3,6 +3,8 @@
 use heapless::String;
 use wire::MAX_REASON;
 
+use crate::division::quotient;
+
 /// A line put together without `core::fmt`, which would cost kilobytes of code memory. It is as long as the reason that a FAULT
 /// carries; what does not fit is cut.
 #[derive(Debug)]
@@ -32,10 +34,11 @@ impl Text {
     /// Appends a number in decimal.
     #[inline(never)]
     pub fn push_decimal(&mut self, number: u32) -> &mut Self {
-        if number >= 10 {
-            self.push_decimal(number / 10);
+        let tens = quotient(number, 10);
+        if tens > 0 {
+            self.push_decimal(tens);
         }
-        self.push_digit(number % 10)
+        self.push_digit(number - 10 * tens)
     }
 
     /// Appends a number as eight hexadecimal digits.

@@ -3,6 +3,7 @@
 use wire::Boot;
 use wire::boot::PixelOrder;
 
+use crate::division::quotient;
 use crate::leases::Leases;
 
 /// Where a core's units come from.
@@ -67,13 +68,6 @@ fn last_whole_pass(spans: u32) -> u32 {
     } else {
         whole - 1
     }
-}
-
-/// Never inlined: where the compiler sees that a remainder is wanted, too, it takes another routine of its library, beside the one
-/// that is needed anyway.
-#[inline(never)]
-fn quotient(dividend: u32, divisor: u32) -> u32 {
-    dividend / divisor
 }
 
 /// Steele, Lea and Flood's SplitMix64, of which the upper half is used. It chooses units only: what a unit looks like depends on

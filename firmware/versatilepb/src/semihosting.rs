@@ -2,7 +2,9 @@
 
 use runtime::ExitCode;
 
-/// Ends the program.
+/// Ends the program. The call's number is that of A32 code, whatever code the rest of the image is.
+#[instruction_set(arm::a32)]
+#[inline(never)]
 pub fn exit(code: ExitCode) -> ! {
     let block = code.semihosting();
     // SAFETY: the semihosting call of A32 code: r0 says what, r1 points to two words, which outlive it. Without a debugger it is a

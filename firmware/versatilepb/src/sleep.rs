@@ -35,10 +35,17 @@ pub fn until_packet_or_timeout(ticks: u32) {
     TIMER_CONTROL.write(ONE_SHOT);
     SECONDARY_ENABLE.write(ETHERNET_INPUT);
     PRIMARY_ENABLE.write(TIMER_INPUT | SECONDARY_INPUT);
+    wait_for_interrupt();
+    TIMER_CONTROL.write(0);
+    TIMER_CLEAR.write(0);
+}
+
+/// Apart, because an image that looks for light has the rest of this crate in Thumb code, which has no such instruction.
+#[instruction_set(arm::a32)]
+#[inline(never)]
+fn wait_for_interrupt() {
     // SAFETY: CP15's wait-for-interrupt, which takes any value; it changes neither memory nor flags.
     unsafe {
         core::arch::asm!("mcr p15, 0, {}, c7, c0, 4", in(reg) 0, options(nomem, nostack, preserves_flags))
     };
-    TIMER_CONTROL.write(0);
-    TIMER_CLEAR.write(0);
 }
