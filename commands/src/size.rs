@@ -7,12 +7,12 @@ use anyhow::{Context, ensure};
 use host::firmware::arithmetic::Arithmetic;
 use host::firmware::board::Board;
 use host::firmware::footprint::{self, Footprint};
-use host::firmware::{self, Capability, Recipe, growth};
+use host::firmware::{self, Recipe, growth};
 use host::fleet::session::boot_block_len;
 use host::platform::console::say;
 use host::platform::setup::{self, Toolchain, Wanted};
 use host::platform::workspace;
-use host::scene::{Integrator, Scene, compile};
+use host::scene::{Scene, compile};
 
 use crate::SetUp;
 
@@ -55,18 +55,10 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<ExitCode> {
 
 /// Builds and measures the images for a scene; fails where one is over the budget.
 pub(crate) fn measure(toolchain: &Toolchain, scene: &Scene) -> anyhow::Result<Vec<Footprint>> {
-    // The image does not depend on the size of the picture, nor does the boot block's length.
-    let compiled = compile(scene, 4, 3, Integrator::Path);
-    let boot_block = boot_block_len(&compiled);
     let footprint = |(board, profile): (Board, Arithmetic)| {
-        let recipe = Recipe {
-            profile,
-            needs: compiled.needs.with(Capability::Roulette),
-            log: None,
-            soft_float: None,
-            choice: None,
-        };
-        let image = firmware::build(toolchain, board, &recipe)?;
+        // The boot block's length does not depend on the size of the picture.
+        let boot_block = boot_block_len(&compile(scene, 4, 3, profile.integrator()));
+        let image = firmware::build(toolchain, board, &Recipe::by_default(profile, scene))?;
         let footprint = Footprint::of(board, profile, &scene.name, &image, boot_block)?;
         ensure!(
             footprint.is_within_budget(),

@@ -10,11 +10,11 @@ use host::firmware::Level;
 use host::firmware::arithmetic::Arithmetic;
 use host::firmware::board::Board;
 use host::firmware::footprint::{self, Footprint};
-use host::firmware::{self, Capability, Recipe};
+use host::firmware::{self, Recipe};
 use host::platform::console::say;
 use host::platform::setup::{self, Toolchain, Wanted};
 use host::platform::workspace;
-use host::scene::{Integrator, Scene, compile};
+use host::scene::Scene;
 
 use crate::step::{cargo, seconds, shown, step, succeed};
 use crate::{SetUp, check, size, verify};
@@ -122,16 +122,10 @@ fn firmware_steps(toolchain: &Toolchain, scene: &Scene) -> anyhow::Result<Vec<Fo
 
 /// Lints the boards' crates with the compiler that builds them: one with a log, and the other without, where its macros are empty.
 fn lint_firmware(toolchain: &Toolchain, scene: &Scene) -> anyhow::Result<()> {
-    let needs = compile(scene, 4, 3, Integrator::Path)
-        .needs
-        .with(Capability::Roulette);
     for (board, log) in [(Board::Versatilepb, None), (Board::Mps2An385, Some(Level::Trace))] {
         let recipe = Recipe {
-            profile: Arithmetic::Precise,
-            needs,
             log,
-            soft_float: None,
-            choice: None,
+            ..Recipe::by_default(Arithmetic::Precise, scene)
         };
         let mut command = firmware::cargo(toolchain, board, "clippy", &recipe)?;
         command.args(["--lib", "--bins", "--examples", "--", "--deny", "warnings"]);

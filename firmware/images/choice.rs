@@ -8,6 +8,7 @@ use node::{Clock, Fault, Network, Outcome};
 use runtime::image::ImageNeeds;
 use runtime::memory;
 use tracer::integrator::Path;
+use tracer::kronecker::Stratified;
 use wire::{Boot, Name};
 
 runtime::report_panics!(Core);
@@ -18,7 +19,7 @@ core::arch::global_asm!(
     ".set __code_memory_is_doubled, 1"
 );
 
-type Chosen = Single<Only<{ Choice::number(option_env!("TRACER_CHOICE")) }>>;
+type Chosen = Stratified<Single<Only<{ Choice::number(option_env!("TRACER_CHOICE")) }>>>;
 
 #[board::entry]
 fn start() -> ! {

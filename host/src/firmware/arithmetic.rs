@@ -48,7 +48,8 @@ impl Arithmetic {
     /// The sampler that a picture has unless another one is asked for.
     pub const fn sampler(self) -> Sampler {
         match self {
-            Self::Paper | Self::Precise => Sampler::Independent,
+            Self::Paper => Sampler::Independent,
+            Self::Precise => Sampler::Kronecker,
         }
     }
 
@@ -60,7 +61,8 @@ impl Arithmetic {
     /// The integrator that a picture has unless another one is asked for.
     pub const fn integrator(self) -> Integrator {
         match self {
-            Self::Paper | Self::Precise => Integrator::Path,
+            Self::Paper => Integrator::Path,
+            Self::Precise => Integrator::NextEvent,
         }
     }
 }
@@ -99,7 +101,7 @@ macro_rules! with_choice {
     ($choice:expr, $name:ident => $body:expr; $($variant:ident $number:literal),+) => {
         match $choice {
             $(choices::Choice::$variant => {
-                type $name = choices::Single<choices::Only<$number>>;
+                type $name = tracer::kronecker::Stratified<choices::Single<choices::Only<$number>>>;
                 $body
             })+
         }

@@ -3,11 +3,13 @@
 use std::fmt;
 
 use choices::Choice;
-use tracer::scene::Capabilities;
+use tracer::scene::{Capabilities, Capability};
+use tracer::unit::Termination;
 
-use super::arithmetic::Arithmetic;
+use super::arithmetic::{Arithmetic, Sampler};
 use super::board::Board;
 use super::soft_float::SoftFloat;
+use crate::scene::{CompiledScene, Scene, compile};
 
 /// How grave a line is; a core with a log says all that is at least as grave as the level it was built for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, clap::ValueEnum)]
@@ -59,6 +61,33 @@ pub struct Recipe {
 }
 
 impl Recipe {
+    /// What draws this scene, compiled for its integrator, by this profile and sampler, with paths that end so.
+    pub fn of(
+        profile: Arithmetic,
+        sampler: Sampler,
+        compiled: &CompiledScene,
+        termination: Termination,
+    ) -> Self {
+        let needs = compiled
+            .needs
+            .with_if(termination == Termination::Roulette, Capability::Roulette)
+            .with_if(sampler == Sampler::Kronecker, Capability::Kronecker);
+        Self {
+            profile,
+            needs,
+            log: None,
+            soft_float: None,
+            choice: None,
+        }
+    }
+
+    /// What draws this scene by this profile as it does where nothing else is asked for.
+    pub fn by_default(profile: Arithmetic, scene: &Scene) -> Self {
+        // The image does not depend on the size of the picture.
+        let compiled = compile(scene, 4, 3, profile.integrator());
+        Self::of(profile, profile.sampler(), &compiled, Termination::Roulette)
+    }
+
     /// The words of `TRACER_NEEDS`.
     pub(super) fn words(&self) -> String {
         self.needs.to_string()
@@ -99,8 +128,6 @@ impl Recipe {
 
 #[cfg(test)]
 mod tests {
-    use tracer::scene::Capability;
-
     use super::*;
 
     #[test]

@@ -13,7 +13,8 @@ use tracer::scene::All;
 use tracer::unit::{Plan, SPAN, render};
 
 use super::moments::Moments;
-use crate::firmware::arithmetic::{Arithmetic, Sampler, with_profile};
+use crate::firmware::Choice;
+use crate::firmware::arithmetic::{Arithmetic, Sampler, with_choice, with_profile};
 use crate::scene::CompiledScene;
 
 /// The fewest units of a pixel that say anything.
@@ -64,10 +65,14 @@ pub fn noise(
     plan: &Plan,
     progress: impl Fn(u64) + Sync,
 ) -> Option<Noise> {
-    if plan.passes() < FEWEST_UNITS {
-        return None;
-    }
-    Some(with_profile!(profile, sampler, P => of::<P>(compiled, plan, progress)))
+    let is_known = plan.passes() >= FEWEST_UNITS;
+    is_known.then(|| with_profile!(profile, sampler, P => of::<P>(compiled, plan, progress)))
+}
+
+/// The same of a picture by `precise` but for one choice, which is the published system's.
+pub fn noise_of_choice(choice: Choice, compiled: &CompiledScene, plan: &Plan) -> Option<Noise> {
+    let is_known = plan.passes() >= FEWEST_UNITS;
+    is_known.then(|| with_choice!(choice, P => of::<P>(compiled, plan, |_| ())))
 }
 
 fn of<P: Profile>(compiled: &CompiledScene, plan: &Plan, progress: impl Fn(u64) + Sync) -> Noise {

@@ -21,12 +21,10 @@ use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
 use ::cycles::flow::Recording;
-use tracer::scene::{Capabilities, Capability};
-use tracer::unit::{Plan, Termination};
+use tracer::unit::Plan;
 use wire::Name;
 
 use crate::collector::{self, CollectError, Collection, End, Progress};
-use crate::firmware::arithmetic::Sampler;
 use crate::firmware::board::Board;
 use crate::firmware::{self, Image, Recipe};
 use crate::firmware::{Choice, Level, SoftFloat};
@@ -152,25 +150,13 @@ impl Job {
 
     /// The image that this job's cores need.
     pub fn recipe(&self) -> Recipe {
-        Recipe {
-            profile: self.options.profile,
-            needs: self.needs(),
-            log: None,
-            soft_float: None,
-            choice: None,
-        }
-    }
-
-    /// What scene, integrator, sampler and the end of paths need.
-    fn needs(&self) -> Capabilities {
         let options = &self.options;
-        self.compiled
-            .needs
-            .with_if(
-                options.termination.0 == Termination::Roulette,
-                Capability::Roulette,
-            )
-            .with_if(options.sampler() == Sampler::Kronecker, Capability::Kronecker)
+        Recipe::of(
+            options.profile,
+            options.sampler(),
+            &self.compiled,
+            options.termination.0,
+        )
     }
 
     /// Collects from cores that somebody else starts.

@@ -29,7 +29,7 @@ pub struct PictureOptions {
     #[arg(long, value_name = "WxH", default_value = "256x192")]
     pub size: Size,
     /// Samples per pixel in all, a multiple of 4
-    #[arg(long, value_name = "N", default_value = "64", value_parser = samples_per_pixel, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", default_value = "24", value_parser = samples_per_pixel, allow_negative_numbers = true)]
     pub spp: u32,
     /// Number of cores
     #[arg(long, value_name = "N", default_value = "4", value_parser = clap::value_parser!(u16).range(1..=1024), allow_negative_numbers = true)]
@@ -375,7 +375,7 @@ mod tests {
         let plan = picture.plan(64, published()).expect("no epsilon");
         assert_eq!(
             (plan.width, plan.height, plan.spp, plan.samples_per_unit),
-            (256, 192, 64, 64)
+            (256, 192, 24, 24)
         );
         assert_eq!(
             (plan.termination, plan.epsilon),

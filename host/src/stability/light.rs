@@ -19,7 +19,7 @@ pub(super) const PART: Part = Part {
 const SIZE: [u16; 2] = [32, 24];
 /// Samples a pixel of the pilot, and the most.
 const PILOT: u64 = 1024;
-const MOST: u64 = 1 << 14;
+const MOST: u64 = 1 << 12;
 /// What a picture may be off by, as a share of its mean.
 const BIAS: f64 = 2e-4;
 /// The standard error that is aimed at.

@@ -6,14 +6,15 @@ use host::firmware::Choice;
 use host::firmware::board::Board;
 use host::oracle::direct;
 use host::scene::{Integrator, compile};
+use tracer::kronecker::Stratified;
 use tracer::profile::Precise;
 use whole_system::{cornell, plan, said, xtask};
 
 #[test]
 fn every_choice_gives_the_hosts_picture_to_the_bit() {
     let plan = plan::<Precise>(16, 12, 4);
-    let compiled = compile(&cornell(), 16, 12, Integrator::Path);
-    let mut pictures = vec![direct::film::<Precise>(&compiled, &plan).sha256()];
+    let compiled = compile(&cornell(), 16, 12, Integrator::NextEvent);
+    let mut pictures = vec![direct::film::<Stratified<Precise>>(&compiled, &plan).sha256()];
     // The boards take turns: an image is some seconds.
     for (choice, board) in Choice::ALL.into_iter().zip(Board::ALL.into_iter().cycle()) {
         let folder = tempfile::tempdir().expect("a folder");

@@ -7,7 +7,6 @@ use std::sync::atomic::AtomicBool;
 use clap::Parser;
 use host::collector::{self, Collection, End};
 use host::firmware::Level;
-use host::firmware::arithmetic::Arithmetic;
 use host::firmware::board::Board;
 use host::firmware::symbols::{Place, explained};
 use host::fleet::session::Route;
@@ -15,7 +14,7 @@ use host::fleet::{Core, Fleet, QemuFleet, RESTARTS, run_to_end};
 use host::render::options::RenderOptions;
 use host::render::{Job, boot_blocks};
 use tracer::profile::Precise;
-use whole_system::{cornell, film_by, plan, qemu, repository, test_image};
+use whole_system::{cornell, film, plan, qemu, repository, test_image};
 use wire::FaultInfo;
 
 /// One of the images that test a board, and what it says until its end.
@@ -107,10 +106,10 @@ fn collected(board: Board, name: &str, log: Option<Level>, flags: &str) -> (Coll
 
 #[test]
 fn a_core_that_fails_again_and_again_is_named_and_the_picture_is_complete_without_it() {
-    let expected = film_by(Arithmetic::Precise, &cornell(), &plan::<Precise>(128, 96, 128)).sha256();
+    let expected = film::<Precise>(&cornell(), &plan::<Precise>(128, 96, 128)).sha256();
     let quiet = Board::ALL.map(|board| (board, None));
     for (board, log) in quiet.into_iter().chain([(Board::Mps2An385, Some(Level::Error))]) {
-        let flags = "--size 128x96 --spp 128 --cores 3";
+        let flags = "--size 128x96 --spp 128 --cores 3 --integrator path --sampler independent";
         let (collection, text) = collected(board, "failing", log, flags);
         assert_eq!(collection.end, End::Complete);
         assert_eq!(collection.film.sha256(), expected);

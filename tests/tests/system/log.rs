@@ -14,7 +14,6 @@ use host::render::render;
 use object::{Object, ObjectSection, ObjectSymbol};
 use serde_json::Value;
 use tracer::profile::Precise;
-use tracer::scene::Capabilities;
 use whole_system::{cornell, film_by, plan, repository, toolchain};
 
 #[derive(Parser)]
@@ -25,11 +24,8 @@ struct Flags {
 
 fn image(board: Board, profile: Arithmetic, log: Option<Level>) -> Image {
     let recipe = Recipe {
-        profile,
-        needs: Capabilities::PATHS,
         log,
-        soft_float: None,
-        choice: None,
+        ..Recipe::by_default(profile, &cornell())
     };
     build(&toolchain(), board, &recipe).unwrap()
 }

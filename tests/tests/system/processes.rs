@@ -5,14 +5,13 @@ use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-use host::firmware::arithmetic::{Arithmetic, Sampler};
+use host::firmware::arithmetic::Arithmetic;
 use host::firmware::board::Board;
 use host::firmware::{self, Recipe};
 use host::fleet::NativeFleet;
 use serde_json::Value;
 use tempfile::TempDir;
-use tracer::scene::Capabilities;
-use whole_system::{program, repository, said, script, toolchain, xtask};
+use whole_system::{cornell, program, repository, said, script, toolchain, xtask};
 
 /// A picture that takes an emulated core a moment.
 const SMALL: [&str; 6] = ["--size", "64x48", "--spp", "16", "--reference", "none"];
@@ -237,13 +236,7 @@ fn no_core_outlives_a_host_that_is_killed() {
 
 #[test]
 fn the_collector_takes_cores_that_are_started_elsewhere() {
-    let recipe = Recipe {
-        profile: Arithmetic::Precise,
-        needs: Capabilities::PATHS,
-        log: None,
-        soft_float: None,
-        choice: None,
-    };
+    let recipe = Recipe::by_default(Arithmetic::Precise, &cornell());
     let image = firmware::build(&toolchain(), Board::Versatilepb, &recipe).expect("an image");
     let elf = image.elf.to_str().expect("UTF-8");
     let out = tempfile::tempdir().expect("a folder");
@@ -310,8 +303,8 @@ fn a_picture_whose_folder_is_gone_when_it_is_done_is_kept() {
         if in_the_way {
             fs::write(&out, "").expect("a file");
         }
-        let _core =
-            NativeFleet::start(&[block()], Arithmetic::Precise, Sampler::Independent).expect("a thread");
+        let profile = Arithmetic::Precise;
+        let _core = NativeFleet::start(&[block()], profile, profile.sampler()).expect("a thread");
         let output = collector.wait_with_output().expect("its output");
         let said = said(&output);
         let kept = if in_the_way {

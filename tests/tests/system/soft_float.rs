@@ -18,6 +18,7 @@ fn picture_of_cores(format: &str) -> serde_json::Value {
         format,
     ]);
     render.args(["--size", "16x12", "--spp", "4", "--cores", "2"]);
+    render.args(["--integrator", "path", "--sampler", "independent"]);
     render.args(["--board", "versatilepb,mps2-an385", "--out"]);
     let output = render.arg(folder.path()).output().expect("it starts");
     assert!(output.status.success(), "{}", said(&output));

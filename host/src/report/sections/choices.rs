@@ -1,6 +1,7 @@
 //! What each choice of `precise` buys: one at a time is the published system's.
 
 use maud::html;
+use tracer::kronecker::Stratified;
 use tracer::profile::{Paper, Precise};
 use tracer::unit::{Plan, Termination};
 
@@ -58,8 +59,8 @@ const DEFAULT: Variant = Variant {
     choice: None,
     epsilon: false,
     end: Termination::Roulette,
-    integrator: Integrator::Path,
-    sampler: Sampler::Independent,
+    integrator: Arithmetic::Precise.integrator(),
+    sampler: Arithmetic::Precise.sampler(),
 };
 
 const fn single(name: &'static str, choice: Choice) -> Variant {
@@ -94,18 +95,20 @@ const VARIANTS: [Variant; 14] = [
         ..DEFAULT
     },
     Variant {
-        name: "next event",
-        integrator: Integrator::NextEvent,
+        name: "paths that do not look for light",
+        integrator: Integrator::Path,
         ..DEFAULT
     },
     Variant {
-        name: "Kronecker samples",
-        sampler: Sampler::Kronecker,
+        name: "independent samples",
+        sampler: Sampler::Independent,
         ..DEFAULT
     },
     Variant {
         name: "paper: all of the published",
         profile: Arithmetic::Paper,
+        integrator: Arithmetic::Paper.integrator(),
+        sampler: Arithmetic::Paper.sampler(),
         ..DEFAULT
     },
 ];
@@ -161,7 +164,7 @@ fn make(workshop: &Workshop<'_>, effort: &Effort) -> Result<Section, Error> {
                  with the independent reference; there noise hides more." }
             p { code { "precise" } " draws no sine: that choice is beside Malley's disc, which needs one. The low bits alone are 16, so two draws make a number. \
                  Directions in 16:16 are cut by an instruction a component, which formats of 16:16 would not need. To look for light, and to keep samples apart, is \
-                 not for the arithmetic but against noise: that is the last column." }
+                 not for the arithmetic but against noise: what it costs to do without is in the last column. The published system does neither." }
         },
         commands: &[
             "cargo xtask render --size 64x48 --cycles --choice root",
@@ -282,7 +285,7 @@ impl Variant {
                 lockstep::render_choice_beside(choice, compiled, plan, I16F16::DELTA, done)
             }
             (None, Arithmetic::Precise, true) => {
-                lockstep::render_beside::<Precise>(compiled, plan, I16F16::DELTA, done)
+                lockstep::render_beside::<Stratified<Precise>>(compiled, plan, I16F16::DELTA, done)
             }
             (None, Arithmetic::Paper, _) => {
                 lockstep::render_beside::<Paper>(compiled, plan, I16F16::DELTA, done)
@@ -315,9 +318,9 @@ impl Found {
         let compiled = compile(&job.scene, job.size[0], job.size[1], variant.integrator);
         let plan = variant.plan(&job.scene, &compiled, job.size, job.spp);
         let paired = variant.paired(&compiled, &plan, effort);
-        let noise = match variant.sampler {
-            Sampler::Independent => noise_of(&paired.picture),
-            Sampler::Kronecker => noise::noise(variant.profile, variant.sampler, &compiled, &plan, |_| ()),
+        let noise = match variant.choice {
+            Some(choice) => noise::noise_of_choice(choice, &compiled, &plan),
+            None => noise::noise(variant.profile, variant.sampler, &compiled, &plan, |_| ()),
         };
         let noise = noise.or_else(|| job.workshop.quick.then(|| noise_of(&paired.picture))?);
         let (against, comparison) = if variant.is_shared_by_doubles() {
@@ -364,7 +367,7 @@ impl Found {
     }
 }
 
-/// The noise of one of independent samples.
+/// What a picture's own samples say of its noise, as if they were independent: all that a quick run has.
 fn noise_of(picture: &Estimate) -> Option<Noise> {
     let spp = f64::from(picture.spp?);
     let variance = picture.variance.as_ref()?.iter();
