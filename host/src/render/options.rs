@@ -372,7 +372,11 @@ mod tests {
         );
         let out = picture.out("cornell").expect("tests run in the checkout");
         assert!(out.ends_with("out/cornell-precise"), "{}", out.display());
-        let plan = picture.plan(64, published()).expect("no epsilon");
+        assert_eq!(
+            (picture.integrator(), picture.sampler()),
+            (Integrator::NextEvent, Sampler::Kronecker)
+        );
+        let plan = picture.plan(24, published()).expect("no epsilon");
         assert_eq!(
             (plan.width, plan.height, plan.spp, plan.samples_per_unit),
             (256, 192, 24, 24)

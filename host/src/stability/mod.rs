@@ -8,7 +8,7 @@ mod convergence;
 mod divergence;
 mod draw;
 mod exact;
-mod figures;
+pub(crate) mod figures;
 mod hard;
 mod intersection;
 mod light;

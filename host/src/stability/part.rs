@@ -51,13 +51,18 @@ impl Effort {
         self.divisor > 1
     }
 
-    /// The same bar, for one of so many parts of the full work.
+    /// The same bar, for one of so many parts of this work.
     ///
     /// # Panics
     /// If there are no parts.
     #[must_use]
-    pub fn with_divisor(&self, divisor: u64) -> Self {
-        Self::new(divisor, self.bar.clone())
+    pub fn one_of(&self, parts: u64) -> Self {
+        Self::new(self.divisor * parts, self.bar.clone())
+    }
+
+    /// Of how many parts of the full work this is one.
+    pub fn parts(&self) -> u64 {
+        self.divisor
     }
 
     /// What is to be done of `full` work: at least 1.

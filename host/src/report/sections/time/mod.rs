@@ -172,17 +172,12 @@ impl Job {
 
 /// A picture with the noise that so many of its samples have by the reference's word.
 fn with_noise(picture: Picture, system: &System, spp: u32, reference: &Rendered) -> Estimate {
-    let of_a_sample: Vec<[f64; 3]> = match system.integrator {
-        Integrator::Path => reference.plain_variance.clone(),
-        // The reference looks for light, too.
-        Integrator::NextEvent => {
-            let samples = f64::from(reference.estimate.spp.unwrap_or_default());
-            let variance = reference.estimate.variance.iter().flatten();
-            variance.map(|variance| variance.map(|v| v * samples)).collect()
-        }
+    let of_a_sample = match system.integrator {
+        Integrator::Path => &reference.plain_variance,
+        Integrator::NextEvent => &reference.looking_variance,
     };
     let variance = of_a_sample
-        .into_iter()
+        .iter()
         .map(|variance| variance.map(|v| v / f64::from(spp)));
     Estimate {
         picture,
