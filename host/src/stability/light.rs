@@ -42,7 +42,9 @@ fn measure(effort: &Effort) -> Result<Findings, Error> {
         note(row.join("  "));
         table.push(row);
         faults.extend(found.faults(&scene.name, files.len()));
-        all.add(&found.independent);
+        if found.emitters != [0, 0] {
+            all.add(&found.independent);
+        }
     }
     table.push(all.row());
     faults.extend(all.fault());
@@ -53,7 +55,7 @@ fn measure(effort: &Effort) -> Result<Findings, Error> {
     })
 }
 
-/// The biases of all scenes, each with the weight that its noise gives it: what one scene alone is too noisy to tell.
+/// The biases of all scenes that have something to look for, each with the weight that its noise gives it: what one scene alone is too noisy to tell.
 #[derive(Default)]
 struct Pooled {
     weights: f64,
@@ -81,7 +83,7 @@ impl Pooled {
         let bias = format!("{} ± {}", figure(100.0 * bias), figure(100.0 * error));
         let nothing = String::new;
         vec![
-            "all together".to_owned(),
+            "those with emitters".to_owned(),
             nothing(),
             nothing(),
             bias,
@@ -93,7 +95,7 @@ impl Pooled {
     fn fault(&self) -> Option<String> {
         let (bias, error) = self.bias();
         let is_off = bias.abs() > BIAS + SURE * error;
-        is_off.then(|| format!("all scenes together: the mean is off by {bias:+.6} ± {error:.6}"))
+        is_off.then(|| format!("scenes with emitters together: the mean is off by {bias:+.6} ± {error:.6}"))
     }
 }
 
