@@ -77,3 +77,100 @@ fn a_plain_path_tracer_in_another_language_finds_scenes_as_bright() {
         );
     }
 }
+
+/// A room of radius 10 around a camera that looks at a diffuse ball, and what else is in it.
+fn room_with(name: &str, spheres: &str) -> Scene {
+    let text = format!(
+        "format = 1\n[camera]\nposition = [0, 0, 0]\ndirection = [0, 0, -1]\nplane_height = 1\n\
+         {}{}{spheres}",
+        sphere("room", [0.0; 3], 10.0, "hollow = true\ndiffuse = [0.5, 0.5, 0.5]"),
+        sphere("ball", [0.5, -0.5, -5.0], 1.0, "diffuse = [0.7, 0.5, 0.3]"),
+    );
+    Scene {
+        name: name.to_owned(),
+        ..Scene::parse("lights.toml", &text).unwrap_or_else(|error| panic!("{name}: {error}"))
+    }
+}
+
+fn sphere(name: &str, centre: [f64; 3], radius: f64, more: &str) -> String {
+    format!("[[sphere]]\nname = \"{name}\"\ncentre = {centre:?}\nradius = {radius:?}\n{more}\n")
+}
+
+fn lamp(name: &str, centre: [f64; 3], radius: f64) -> String {
+    sphere(name, centre, radius, "emission = [9, 9, 9]\ndiffuse = [0, 0, 0]")
+}
+
+/// Emitters that are easily got wrong, each with what is known of it by a reference that finds light in another way.
+#[test]
+fn odd_emitters_are_as_bright_as_they_should() {
+    let seen = lamp("seen", [3.0, 2.0, -5.0], 0.5);
+    let glass = |centre| sphere("glass", centre, 1.0, "glass = [0.9, 0.9, 0.9]\nindex = 1.5");
+    let hundreds: String = (0..200)
+        .map(|number| {
+            let place = [
+                f64::from(number % 20) * 0.5 - 5.0,
+                f64::from(number / 20) * 0.5 - 2.0,
+                -7.0,
+            ];
+            lamp(&format!("lamp {number}"), place, 0.05)
+        })
+        .collect();
+    let around = sphere(
+        "sky",
+        [0.0; 3],
+        9.9,
+        "hollow = true\nemission = [0.5, 0.5, 0.5]\ndiffuse = [0.3, 0.3, 0.3]",
+    );
+    let scenes = [
+        (
+            "beyond the wall",
+            seen.clone() + &lamp("unseen", [0.0, 12.0, 0.0], 0.5),
+        ),
+        (
+            "in a ball",
+            seen.clone() + &lamp("unseen", [0.5, -0.5, -5.0], 0.5),
+        ),
+        ("hundreds", hundreds),
+        ("all around", around.clone()),
+        ("all around, and a lamp", around + &seen),
+        (
+            "as small as can be",
+            seen.clone() + &lamp("dot", [-1.0, 0.0, -4.0], 1e-5),
+        ),
+        (
+            "in glass",
+            glass([-1.0, 0.0, -4.0]) + &lamp("lamp", [-1.0, 0.2, -4.0], 0.5),
+        ),
+        (
+            "half in glass",
+            glass([-1.0, 0.0, -4.0]) + &lamp("lamp", [-1.0, 0.8, -4.0], 0.5),
+        ),
+        ("touching the wall", lamp("lamp", [0.0, 9.0, 0.0], 1.0)),
+        ("half in the wall", lamp("lamp", [0.0, 10.0, 0.0], 1.0)),
+        ("a cap of the wall", lamp("lamp", [0.0, 10.9, 0.0], 1.0)),
+        ("touching the ball", lamp("lamp", [0.5, 0.75, -5.0], 0.25)),
+    ];
+    for (name, spheres) in scenes {
+        let scene = room_with(name, &spheres);
+        let found = estimate_by::<Precise>(&scene, &plan::<Precise>(16, 12, 64), Integrator::NextEvent);
+        let known = reference(&scene, 16, 12, 256);
+        is_as_bright(&scene, found, Integrator::NextEvent, &known);
+    }
+}
+
+/// What is smaller than a core can tell is refused, with what would do.
+#[test]
+fn an_emitter_of_a_few_ulp_is_refused_with_a_remedy() {
+    let text = format!(
+        "format = 1\n[camera]\nposition = [0, 0, 0]\ndirection = [0, 0, -1]\nplane_height = 1\n{}{}",
+        sphere("room", [0.0; 3], 10.0, "hollow = true\ndiffuse = [0.5, 0.5, 0.5]"),
+        lamp("dot", [0.0, 0.0, -5.0], 1e-7),
+    );
+    let error = Scene::parse("dot.toml", &text)
+        .expect_err("it is too small")
+        .to_string();
+    assert!(
+        error.contains("\"dot\"") && error.contains("make it at least"),
+        "{error}"
+    );
+}

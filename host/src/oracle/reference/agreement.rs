@@ -177,7 +177,7 @@ fn a_plain_path_tracer_agrees_in_scenes_of_every_kind() {
         for termination in [Termination::Roulette, Termination::Depth(4)] {
             let job = Job { termination, ..TILES };
             let plain = Job {
-                spp: 256,
+                spp: 512,
                 seed: 8,
                 ..job
             };
