@@ -65,17 +65,18 @@ pub fn noise(
     plan: &Plan,
     progress: impl Fn(u64) + Sync,
 ) -> Option<Noise> {
-    let is_known = plan.passes() >= FEWEST_UNITS;
-    is_known.then(|| with_profile!(profile, sampler, P => of::<P>(compiled, plan, progress)))
+    with_profile!(profile, sampler, P => of::<P>(compiled, plan, progress))
 }
 
 /// The same of a picture by `precise` but for one choice, which is the published system's.
 pub fn noise_of_choice(choice: Choice, compiled: &CompiledScene, plan: &Plan) -> Option<Noise> {
-    let is_known = plan.passes() >= FEWEST_UNITS;
-    is_known.then(|| with_choice!(choice, P => of::<P>(compiled, plan, |_| ())))
+    with_choice!(choice, P => of::<P>(compiled, plan, |_| ()))
 }
 
-fn of<P: Profile>(compiled: &CompiledScene, plan: &Plan, progress: impl Fn(u64) + Sync) -> Noise {
+fn of<P: Profile>(compiled: &CompiledScene, plan: &Plan, progress: impl Fn(u64) + Sync) -> Option<Noise> {
+    if plan.passes() < FEWEST_UNITS {
+        return None;
+    }
     let (scene, path) = (compiled.view(), Path::<P, All>::new(plan));
     let camera = Camera::new(&compiled.camera);
     let unit = 2f64.powi(-compiled.exponent);
@@ -101,9 +102,9 @@ fn of<P: Profile>(compiled: &CompiledScene, plan: &Plan, progress: impl Fn(u64) 
                 .collect()
         })
         .collect();
-    Noise {
+    Some(Noise {
         variance: spans.concat(),
-    }
+    })
 }
 
 #[cfg(test)]

@@ -50,11 +50,9 @@ fn measure(effort: &Effort) -> Result<Findings, Error> {
     measure_apart(effort, effort)
 }
 
-/// The same, with an effort for each figure.
-pub(crate) fn measure_apart(of_two: &Effort, of_three: &Effort) -> Result<Findings, Error> {
-    let [two, three] = [(of_two, FIGURE_2), (of_three, FIGURE_3)]
-        .map(|(effort, spp)| effort.of(spp).next_multiple_of(4) as u32);
-    let effort = of_two;
+/// The same, with another effort for figure 3.
+pub(crate) fn measure_apart(effort: &Effort, of_three: &Effort) -> Result<Findings, Error> {
+    let [two, three] = [effort.of(FIGURE_2), of_three.of(FIGURE_3)].map(|spp| spp.next_multiple_of(4) as u32);
     let pixels = u64::from(SIZE[0]) * u64::from(SIZE[1]);
     effort.expect(2 * pixels * (u64::from(two) + EPSILONS.len() as u64 * u64::from(three)));
     let scene = Scene::load(&workspace::file(SCENE)?)?;

@@ -180,6 +180,23 @@ fn every_image_fits_and_holds_no_more_than_its_scene_needs() {
     }
 }
 
+/// Whatever else its scene has, an image that looks for one emitter, a cap, is optimised as all others are, and fits.
+#[test]
+fn an_image_that_looks_for_one_cap_fits() {
+    let needs = Capabilities::ALL
+        .without(Capability::TwoSided)
+        .without(Capability::Vast)
+        .without(Capability::ManyLights)
+        .without(Capability::BallLights);
+    for board in Board::ALL {
+        let size = build(&toolchain(), board, &recipe(Arithmetic::Precise, needs))
+            .unwrap()
+            .size;
+        println!("{board}: {size}");
+        assert!(size.itcm_bytes <= ITCM_BUDGET);
+    }
+}
+
 /// `memory.x` states a core's memory, and `board.x` where it lies: the linker has written both into the image.
 #[test]
 fn the_host_and_the_loader_know_the_memory_that_images_are_linked_for() {

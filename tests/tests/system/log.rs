@@ -14,6 +14,7 @@ use host::render::render;
 use object::{Object, ObjectSection, ObjectSymbol};
 use serde_json::Value;
 use tracer::profile::Precise;
+use tracer::scene::Capabilities;
 use whole_system::{cornell, film_by, plan, repository, toolchain};
 
 #[derive(Parser)]
@@ -22,12 +23,18 @@ struct Flags {
     options: RenderOptions,
 }
 
-fn image(board: Board, profile: Arithmetic, log: Option<Level>) -> Image {
-    let recipe = Recipe {
-        log,
-        ..Recipe::by_default(profile, &cornell())
+fn image(board: Board, recipe: Recipe, log: Option<Level>) -> Image {
+    build(&toolchain(), board, &Recipe { log, ..recipe }).unwrap()
+}
+
+/// The largest image whose paths only meet light, and the default's.
+fn recipes(profile: Arithmetic) -> [Recipe; 2] {
+    let default = Recipe::by_default(profile, &cornell());
+    let paths = Recipe {
+        needs: Capabilities::PATHS,
+        ..default
     };
-    build(&toolchain(), board, &recipe).unwrap()
+    [paths, default]
 }
 
 /// What an image has of `defmt`: sections, and symbols.
@@ -43,17 +50,14 @@ fn remains(image: &Image) -> [usize; 2] {
 #[test]
 fn an_image_without_a_log_has_nothing_of_it_and_one_with_it_fits() {
     for board in Board::ALL {
-        for profile in Arithmetic::ALL {
-            let without = image(board, profile, None);
-            assert_eq!(remains(&without), [0, 0], "{board}, {profile}");
-            let with = image(board, profile, Some(Level::Trace));
-            assert!(
-                remains(&with).iter().all(|&found| found > 0),
-                "{board}, {profile}"
-            );
-            let bytes = with.size.itcm_bytes - without.size.itcm_bytes;
-            println!("{board}, {profile}: the log at its most talkative takes {bytes} bytes of code memory");
-            assert!(with.size.itcm_bytes <= ITCM_BUDGET);
+        for recipe in Arithmetic::ALL.into_iter().flat_map(recipes) {
+            let what = format!("{board}, {}", recipe.describe());
+            let [without, with] = [None, Some(Level::Trace)].map(|log| image(board, recipe, log));
+            assert_eq!(remains(&without), [0, 0], "{what}");
+            assert!(remains(&with).iter().all(|&found| found > 0), "{what}");
+            let [quiet, talkative] = [&without, &with].map(|image| image.size.itcm_bytes);
+            println!("{what}: {quiet} bytes of code memory, {talkative} with a log at its most talkative");
+            assert!(talkative <= ITCM_BUDGET, "{what}");
         }
     }
 }

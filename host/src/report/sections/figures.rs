@@ -28,7 +28,8 @@ fn make(_workshop: &Workshop<'_>, effort: &Effort) -> Result<Section, Error> {
         prose: html! {
             p { "Figure 2: the picture in fixed point, the same samples in double precision, and the difference: blue is darker, red brighter. \
                  Figure 3: how far from a surface a new ray starts. " code { "precise" } " needs no epsilon; " code { "paper" }
-                " needs 0.1, and loses for it what is nearer, as the light's reflection on the glass ball." }
+                " needs 0.1, and loses for it what is nearer, as the light's reflection on the glass ball. Figure 3 has one of "
+                (SHARE_OF_FIGURE_3) " of the samples that the command takes." }
             (faults(&found))
         },
         commands: &["cargo xtask verify stability figures"],
